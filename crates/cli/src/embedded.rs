@@ -8,6 +8,7 @@ use limitmesh::Mesh;
 
 use crate::arguments::{Arguments, Command};
 use crate::commands;
+use crate::commands::batch::{BatchCounts, RemoteFiles};
 use crate::failure::{Outcome, UsageError};
 use crate::mesh_info;
 use crate::output;
@@ -55,12 +56,7 @@ pub(crate) fn refined(
     arguments: impl IntoIterator<Item = OsString>,
     progress: &Progress,
 ) -> Result<Refined, Failure> {
-    let words = ["limitmesh", "refine"]
-        .into_iter()
-        .map(OsString::from)
-        .chain(arguments);
-    let parsed = Arguments::try_parse_from(words)
-        .map_err(|why| Failure::Usage(first_line(&why.to_string())))?;
+    let parsed = parsed("refine", arguments)?;
     let Command::Refine(arguments) = &parsed.command else {
         return Err(Failure::Usage("that is not limitmesh refine".to_owned()));
     };
@@ -71,10 +67,43 @@ pub(crate) fn refined(
         Ok(Outcome::StoppedShort(why)) => Ok(Refined {
             stopped_short: Some(why),
         }),
-        Err(error) => Err(match error.downcast_ref::<UsageError>() {
-            Some(UsageError(what)) => Failure::Usage(what.clone()),
-            None => Failure::Input(in_words(&error)),
-        }),
+        Err(error) => Err(failure(error)),
+    }
+}
+
+/// `limitmesh batch` with these arguments: each job in a process of its own, which `again` starts as for [`program`](crate::program). Files
+/// at addresses such as `s3://bucket/a.stl` are copied by the caller.
+///
+/// # Errors
+/// As the program's, but for jobs that fail; the host stopped it.
+pub fn batch(
+    arguments: impl IntoIterator<Item = OsString>,
+    again: &[OsString],
+    remote: &dyn RemoteFiles,
+    host: &dyn Host,
+) -> Result<BatchCounts, Failure> {
+    let parsed = parsed("batch", arguments)?;
+    let Command::Batch(arguments) = &parsed.command else {
+        return Err(Failure::Usage("that is not limitmesh batch".to_owned()));
+    };
+    let (threads, progress) = (parsed.global.threads, Progress::to_host(host));
+    commands::batch::work(arguments, again, threads, Some(remote), &progress).map_err(failure)
+}
+
+/// The arguments of a command.
+fn parsed(
+    command: &str,
+    arguments: impl IntoIterator<Item = OsString>,
+) -> Result<Arguments, Failure> {
+    let words = ["limitmesh", command].into_iter().map(OsString::from);
+    Arguments::try_parse_from(words.chain(arguments))
+        .map_err(|why| Failure::Usage(first_line(&why.to_string())))
+}
+
+fn failure(error: anyhow::Error) -> Failure {
+    match error.downcast_ref::<UsageError>() {
+        Some(UsageError(what)) => Failure::Usage(what.clone()),
+        None => Failure::Input(in_words(&error)),
     }
 }
 

@@ -4,7 +4,7 @@
 //! output, 2 usage, 3 stopped short of what was asked. Messages go to standard error, so that a report or a
 //! measurement can be piped.
 //!
-//! The program is [`program`]; other programs, such as the Python package, run its commands on files through [`refine_files`] and
+//! The program is [`program`]; other programs, such as the Python package, run its commands on files through [`refine_files`] and [`batch`], and
 //! look at meshes through [`examined`].
 
 mod arguments;
@@ -42,7 +42,8 @@ use arguments::{Arguments, Command};
 use failure::{Outcome, UsageError, is_broken_pipe};
 use progress::Progress;
 
-pub use embedded::{Failure, Refined, examined, refine_files};
+pub use commands::batch::{BatchCounts, RemoteFiles};
+pub use embedded::{Failure, Refined, batch, examined, refine_files};
 pub use progress::Host;
 
 /// The program with a command line, whose first word is the program's name; gives its exit code. Where the command line makes no sense, or

@@ -20,7 +20,7 @@ use crate::control::Recipe;
 use crate::errors::Failure;
 use crate::options::{CameraIn, ControlOptions, Extent, camera, front_levels};
 use crate::pool::{self, Pool};
-use crate::run::{ends, run};
+use crate::run::{PATIENCE, ends, run};
 use crate::soup::MeshIn;
 use crate::tell;
 
@@ -290,7 +290,7 @@ impl Front {
             .jobs
             .send(job)
             .map_err(|_| PyRuntimeError::new_err("the front's thread has ended"))?;
-        let (result, is_idle) = caller.wait(py);
+        let (result, is_idle) = caller.wait(py, PATIENCE);
         worker.is_told = matches!(result, Ok(Ok(_)));
         if is_idle {
             *self.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(worker);

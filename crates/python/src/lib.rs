@@ -54,7 +54,7 @@ mod _limitmesh {
     #[pymodule_export]
     use super::picture::picture;
     #[pymodule_export]
-    use super::program::{program, refine_file};
+    use super::program::{batch, program, refine_file};
     #[pymodule_export]
     use super::project::project;
     #[pymodule_export]

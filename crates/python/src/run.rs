@@ -20,7 +20,7 @@ use crate::pool::Pool;
 const WAKE: Duration = Duration::from_millis(50);
 
 /// How long a job that is to stop may take for it before the caller goes on without it: it stops at its next block of work.
-const PATIENCE: Duration = Duration::from_millis(150);
+pub(crate) const PATIENCE: Duration = Duration::from_millis(150);
 
 /// What job and caller tell each other.
 #[derive(Default)]
@@ -40,10 +40,24 @@ pub(crate) fn run<T: Send + 'static>(
     progress: Option<Py<PyAny>>,
     job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
+    run_with_patience(py, threads, progress, PATIENCE, job)
+}
+
+/// [`run`], for a job that may take so long to stop.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_with_patience<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+    patience: Duration,
+    job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure> + Send + 'static,
+) -> PyResult<T> {
     let pool = Pool::take(threads)?;
     let (worker, caller) = ends(progress);
     pool.start(move || worker.finish(job));
-    let (result, is_idle) = caller.wait(py);
+    let (result, is_idle) = caller.wait(py, patience);
     if is_idle {
         pool.keep();
     }
@@ -108,8 +122,12 @@ pub(crate) struct CallerEnd<T> {
 
 impl<T: Send> CallerEnd<T> {
     /// Waits for the job; what came of it, or what a signal's handler or `progress` raised, and whether it has come to its end.
-    pub(crate) fn wait(self, py: Python<'_>) -> (PyResult<Result<T, Failure>>, bool) {
-        py.detach(move || wait(&self.receiver, &self.line, self.progress.as_ref()))
+    pub(crate) fn wait(
+        self,
+        py: Python<'_>,
+        patience: Duration,
+    ) -> (PyResult<Result<T, Failure>>, bool) {
+        py.detach(move || wait(&self.receiver, &self.line, self.progress.as_ref(), patience))
     }
 }
 
@@ -118,6 +136,7 @@ fn wait<T>(
     receiver: &Receiver<Result<T, Failure>>,
     line: &Line,
     progress: Option<&Py<PyAny>>,
+    patience: Duration,
 ) -> (PyResult<Result<T, Failure>>, bool) {
     loop {
         match receiver.recv_timeout(WAKE) {
@@ -130,7 +149,7 @@ fn wait<T>(
         }
         if let Err(raised) = Python::attach(|py| look_up(py, line, progress)) {
             line.is_stopped.store(true, Relaxed);
-            return (Err(raised), receiver.recv_timeout(PATIENCE).is_ok());
+            return (Err(raised), receiver.recv_timeout(patience).is_ok());
         }
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::values;
+use super::values::{self, Shard};
 
 const EXAMPLES: &str = "\
 A job is an object on a line of its own: its input, the file to write, and any option of `limitmesh
@@ -32,6 +32,8 @@ Examples:
   limitmesh batch jobs.jsonl -o results.jsonl --resume --time-limit 600 --memory-limit 2G
   ls scans/*.stl | sed 's|.*/\\(.*\\).stl|{\"input\": \"&\", \"output\": \"smooth/\\1.ply\"}|' |
     limitmesh batch - -o results.jsonl
+  limitmesh batch jobs.jsonl -o results-2.jsonl --shard 2/8
+  cat results-*.jsonl | sort -t: -k2n > results.jsonl
 
 Exit codes: 0 all jobs are done, 1 some failed, or the jobs cannot be read, 2 usage, 3 none failed
 and some stopped short; 130, 143 and 129 where Ctrl-C, SIGTERM or SIGHUP cancelled it: --resume
@@ -65,6 +67,14 @@ pub(crate) struct BatchArguments {
     /// output is there. Failures are tried again, but for those at a limit that is not higher now.
     #[arg(long)]
     pub(crate) resume: bool,
+
+    /// Do a part of the jobs: shard I of N, counted from 0
+    ///
+    /// For array jobs: a machine for each I from 0 to N - 1, with a file of results of its own. I is AWS_BATCH_JOB_ARRAY_INDEX of AWS
+    /// Batch, JOB_COMPLETION_INDEX of Kubernetes, or SLURM_ARRAY_TASK_ID of `sbatch --array=0-7` for 8. Each line of the jobs belongs to one
+    /// shard, every Nth to the same; results keep the numbers of the lines.
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Shard>,
 
     /// Seconds that a job may take; then it is ended
     #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]

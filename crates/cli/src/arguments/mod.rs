@@ -48,7 +48,7 @@ pub(crate) use shared::{
     BuildArguments, OverwriteArguments, RefiningScheme, SMOOTH_TRIANGLES, SchemeName,
 };
 pub(crate) use tolerances::MorphTolerance;
-pub(crate) use values::{Extent, MAX_STEPS, Size};
+pub(crate) use values::{Extent, MAX_STEPS, Shard, Size};
 pub(crate) use view::ViewArguments;
 pub(crate) use viewer::Viewer;
 

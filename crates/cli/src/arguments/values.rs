@@ -278,9 +278,59 @@ impl FromStr for Size {
     }
 }
 
+/// A part of many, counted from 0: written `I/N`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// Whether a line, counted from 1, belongs to it.
+    pub(crate) fn has(self, line: usize) -> bool {
+        (line - 1) % self.count == self.index
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is no shard; give I/N, such as 0/8 to 7/8");
+        let (index, count) = text.split_once('/').ok_or_else(wrong)?;
+        let number = |text: &str| usize::from_str(text.trim()).map_err(|_| wrong());
+        let shard = Self {
+            index: number(index)?,
+            count: number(count)?,
+        };
+        match shard {
+            Self { count: 0, .. } => {
+                Err(format!("{text} is out of range: there is at least 1 shard"))
+            }
+            Self { index, count } if index >= count => Err(format!(
+                "{text} is out of range: of {count} the last shard is {}",
+                count - 1
+            )),
+            shard => Ok(shard),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_line_is_in_one_shard() {
+        let shards = ["0/3", "1/3", "2/3"].map(|text| Shard::from_str(text).unwrap());
+        for line in 1..10 {
+            assert_eq!(shards.iter().filter(|shard| shard.has(line)).count(), 1);
+        }
+        assert!(shards[0].has(1) && shards[2].has(6));
+        for bad in ["3/3", "0/0", "1", "-1/3", "1/x", "1/3/5", ""] {
+            assert!(Shard::from_str(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn ranges_hold() {

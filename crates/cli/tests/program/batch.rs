@@ -422,6 +422,60 @@ fn jobs_come_from_standard_input_and_results_go_to_standard_output_in_order() {
 }
 
 #[test]
+fn shards_have_each_job_once() {
+    let folder = folder();
+    let out = |name: &str| below(&folder, name);
+    let job = |name: &str, tolerance: &str| json!({"input": format!("builtin:{name}"), "output": out(&format!("{name}.ply")), "tolerance": tolerance});
+    let lines = [
+        job("cube", "1%").to_string(),
+        job("cup", "1%").to_string(),
+        String::new(),
+        "no job".to_owned(),
+        job("head", "2%").to_string(),
+        // The first of another shard writes that file.
+        job("cube", "2%").to_string(),
+        job("radish", "-1").to_string(),
+    ];
+    let list = file(&folder, "jobs.jsonl", &lines.join("\n"));
+    let whole = folder.path().join("whole.jsonl");
+    run("batch {} -o {}", &[&list, &whole]).expect(1);
+    let meshes = || ["cube", "cup", "head"].map(|name| bytes(out(&format!("{name}.ply"))));
+    let expected = meshes();
+    ["cube", "cup", "head"]
+        .iter()
+        .for_each(|name| std::fs::remove_file(out(&format!("{name}.ply"))).expect("a mesh"));
+    for count in [1, 2, 3, 8] {
+        let mut merged = Vec::new();
+        for index in 0..count {
+            let part = folder.path().join(format!("{index}-of-{count}.jsonl"));
+            let words = format!("batch {{}} -o {{}} --quiet --shard {index}/{count}");
+            run(&words, &[&list, &part]);
+            let told = text(&part);
+            let lines = told.lines().map(|line| (json_line(line), line.to_owned()));
+            merged.extend(lines.inspect(|(line, _)| assert_eq!((line - 1) % count, index)));
+        }
+        merged.sort();
+        let merged: String = merged.iter().map(|(_, line)| format!("{line}\n")).collect();
+        assert_eq!(merged, text(&whole), "{count} shards");
+        assert!(meshes() == expected, "{count} shards");
+    }
+    for (shard, words) in [
+        ("2/2", "of 2 the last shard is 1"),
+        ("0/0", "at least 1 shard"),
+        ("1", "give I/N"),
+        ("-1/2", "give I/N"),
+    ] {
+        usage_error(&format!("batch {{}} -o - --shard={shard}"), &[&list], words);
+    }
+}
+
+/// The number of the line in a result.
+fn json_line(result: &str) -> u64 {
+    let result: Value = serde_json::from_str(result).expect("JSON");
+    result["line"].as_u64().expect("a number")
+}
+
+#[test]
 fn files_that_are_no_results_and_jobs_that_are_not_there_are_refused() {
     let folder = folder();
     let list = jobs(

@@ -13,11 +13,12 @@ changed in place. Everything raises `Error`, a ``ValueError``, where its argumen
 import os as _os
 
 from . import _limitmesh
+from ._batch import Batch, batch
 from ._files import refine_file, save
 from ._front import Changes, Front
 from ._frames import RefinedFrames, Replay, refine_frames, replay
 from ._incoming import from_meshio, from_open3d, from_pyvista, from_trimesh
-from ._interop import to_meshio, to_pyvista, to_trimesh
+from ._interop import refine_trimesh, to_meshio, to_pyvista, to_trimesh
 from ._level import Level
 from ._levels import levels_of_detail
 from ._limitmesh import Error, MeshError, OptionError, ReadError, __version__
@@ -38,6 +39,7 @@ if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(before=_limitmesh.end_threads)
 
 __all__ = [
+    "Batch",
     "Camera",
     "Changes",
     "Channel",
@@ -68,6 +70,7 @@ __all__ = [
     "SurfacePoints",
     "ToleranceNotMet",
     "__version__",
+    "batch",
     "estimate",
     "facing",
     "from_meshio",
@@ -86,6 +89,7 @@ __all__ = [
     "refine",
     "refine_file",
     "refine_frames",
+    "refine_trimesh",
     "repair",
     "replay",
     "save",

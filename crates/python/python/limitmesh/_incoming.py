@@ -25,7 +25,7 @@ def _finite(array: npt.NDArray[Any]) -> bool:
     return bool(array.dtype.kind != "f" or np.isfinite(array).all())
 
 
-def _data(name: str, values: Any, domain: Any) -> Channel | None:
+def carried(name: str, values: Any, domain: Any) -> Channel | None:
     """A channel of data by point or cell; what is no number, or no finite one, cannot be carried."""
     array = np.asarray(values)
     if array.ndim > 2:
@@ -50,7 +50,7 @@ def _colour(array: npt.NDArray[Any], domain: Any) -> Channel:
 
 def _carried(data: Mapping[str, Any], domain: Any) -> dict[str, Channel]:
     """Channels of all data that can be carried, by name."""
-    found = {name: _data(name, values, domain) for name, values in data.items()}
+    found = {name: carried(name, values, domain) for name, values in data.items()}
     return {name: channel for name, channel in found.items() if channel is not None}
 
 

@@ -5,11 +5,15 @@ Channels go back under their names. `_incoming` has the way here, and `_outgoing
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 from . import _outgoing
+from ._incoming import from_trimesh
 from ._inputs import as_mesh
 from ._outgoing import Outgoing
+from ._options import Length
+from ._refine import refine
 from ._refined import Refined
 from ._simplify import repair
 
@@ -19,6 +23,40 @@ def _outgoing_of(mesh: Refined | Any, *, sides: bool = True) -> Outgoing:
         return mesh._outgoing(sides=sides)
     mended = repair(as_mesh(mesh))
     return Outgoing(mended.vertices, mended.faces, None, {}, {}, frozenset(), None)
+
+
+def refine_trimesh(mesh: Any, tolerance: Length | None = None, **options: Any) -> Any:
+    """`refine` for trimesh: a ``trimesh.Trimesh`` in, a finer one out, with its material, texture coordinates, colours, attributes and metadata.
+
+    A closed mesh stays closed: its ``is_watertight`` holds.
+
+    Parameters
+    ----------
+    mesh
+        A ``trimesh.Trimesh``.
+    tolerance, options
+        As for `refine`.
+
+    Raises
+    ------
+    MeshError, OptionError
+        As `refine`.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> trimesh = __import__("pytest").importorskip("trimesh")
+    >>> smooth = limitmesh.refine_trimesh(trimesh.creation.icosphere(subdivisions=1), "0.1%")
+    >>> smooth.is_watertight, len(smooth.faces) > 80
+    (True, True)
+    """
+    given = from_trimesh(mesh)
+    if mesh.is_watertight:
+        # Its parts may touch, and would become one.
+        options.setdefault("weld", None)
+    made = to_trimesh(refine(given, tolerance=tolerance, **options), visual=mesh.visual)
+    made.metadata.update(copy.deepcopy(mesh.metadata))
+    return made
 
 
 def to_trimesh(mesh: Refined | Any, *, visual: Any = None) -> Any:

@@ -14,6 +14,7 @@ __all__ = [
     "ReadError",
     "Replay",
     "__version__",
+    "batch",
     "end_threads",
     "estimate",
     "examine",
@@ -130,3 +131,6 @@ def save(
 def end_threads() -> None: ...
 def program(arguments: list[str], again: list[str]) -> int: ...
 def refine_file(arguments: list[str], threads: int, progress: _Callback) -> tuple[str | None, list[str]]: ...
+def batch(
+    arguments: list[str], again: list[str], files: Any, progress: _Callback
+) -> list[int]: ...

@@ -31,6 +31,8 @@ class Outgoing(Shown):
         The channels that are texture coordinates.
     parents
         (m,) the row of the input that each triangle came from, where that is known.
+    sources
+        (n,) the vertex of the result that each vertex was, where there is a result.
     """
 
     vertices: Floats
@@ -40,6 +42,7 @@ class Outgoing(Shown):
     by_face: dict[str, npt.NDArray[Any]]
     textures: frozenset[str]
     parents: npt.NDArray[np.integer[Any]] | None
+    sources: npt.NDArray[np.integer[Any]] | None = None
 
 
 def restored(values: npt.NDArray[Any], channel: Channel) -> npt.NDArray[Any]:

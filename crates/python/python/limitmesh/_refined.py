@@ -320,15 +320,14 @@ class Refined:
         if not names:
             names = tuple(name for name, channel in self.channels.items() if channel.domain == "corner")
         flat = self.faces.reshape(-1).astype(np.int64)
-        keys = [flat]
+        keys = flat
         for name in names:
-            keys.append(np.unique(self._channel(name).values, axis=0, return_inverse=True)[1].reshape(-1)[self._rows(self.channels[name])])
-        side = np.full(len(flat), -1, dtype=np.int64)
+            keys = _together(keys, _ranks(self._channel(name).values)[self._rows(self.channels[name])])
         if normals and len(self._sides[0]):
-            rounded = np.round(self._sides[1], 6)
-            side[self._sides[0]] = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1)
-            keys.append(side)
-        _, first, inverse = np.unique(np.stack(keys, axis=1), axis=0, return_index=True, return_inverse=True)
+            side = np.zeros(len(flat), dtype=np.int64)
+            side[self._sides[0]] = 1 + _ranks(np.round(self._sides[1], 6))
+            keys = _together(keys, side)
+        _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
         # By number of the vertex, so that undivided ones keep their order.
         values = {name: self._channel(name).values[self._rows(self.channels[name])][first] for name in names}
         return Split(
@@ -466,7 +465,23 @@ class Refined:
             {name: restored(channel[slice(None)], channel) for name, channel in faces.items()},
             frozenset(name for name, channel in self.channels.items() if channel.semantic == "texture"),
             self.parent_face,
+            split.sources,
         )
+
+
+def _ranks(rows: Floats) -> npt.NDArray[np.int64]:
+    """By row its place among the different rows, in their order."""
+    order = np.lexsort(rows.T[::-1])
+    ranks = np.zeros(len(rows), dtype=np.int64)
+    ranks[order[1:]] = np.cumsum((rows[order[1:]] != rows[order[:-1]]).any(axis=1))
+    return ranks
+
+
+def _together(keys: npt.NDArray[np.int64], more: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """One key for both, in the order of pairs."""
+    # No more than there are keys, so that their product can be held.
+    places = np.unique(keys, return_inverse=True)[1]
+    return np.asarray(places * (more.max(initial=0) + 1) + more, dtype=np.int64)
 
 
 def _after(corners: AnyIntegers, steps: int) -> AnyIntegers:

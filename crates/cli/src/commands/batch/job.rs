@@ -7,6 +7,7 @@ use std::path::Path;
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
+use super::remote::is_address;
 use crate::arguments::{Arguments, Viewer};
 use crate::file_identity::FileIdentity;
 use crate::output::is_folder;
@@ -14,8 +15,11 @@ use crate::output::is_folder;
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
 
+/// Options that name other files to be written.
+const WRITING: [&str; 2] = ["picture", "proof"];
+
 /// A job.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Job {
     /// As the line names it.
     pub(super) input: String,
@@ -44,8 +48,31 @@ impl Job {
     }
 
     /// The files that it writes.
-    pub(super) fn written(&self) -> impl Iterator<Item = &Path> {
-        self.output.iter().chain(&self.others).map(Path::new)
+    pub(super) fn written(&self) -> impl Iterator<Item = &str> {
+        let written = self.output.iter().chain(&self.others);
+        written.map(String::as_str)
+    }
+
+    /// The files that it reads or writes.
+    pub(super) fn files(&self) -> impl Iterator<Item = &str> {
+        let read = std::iter::once(&self.input).chain(&self.option_files);
+        read.map(String::as_str).chain(self.written())
+    }
+
+    /// Gives another file that it writes another name.
+    pub(super) fn rename(&mut self, old: &str, new: &str) {
+        let others = self.others.iter_mut().filter(|name| *name == old);
+        others.for_each(|name| *name = new.to_owned());
+        for option in &mut self.options {
+            if let Some((key, value)) = option.split_once('=')
+                && WRITING
+                    .iter()
+                    .any(|name| key.strip_prefix("--") == Some(name))
+                && value == old
+            {
+                *option = format!("{key}={new}");
+            }
+        }
     }
 }
 
@@ -53,10 +80,12 @@ impl Job {
 pub(super) struct Reader {
     /// Names of `refine`'s options.
     known: BTreeSet<String>,
+    /// Whether files may be at addresses.
+    takes_addresses: bool,
 }
 
 impl Reader {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(takes_addresses: bool) -> Self {
         let mut whole = Arguments::command();
         whole.build();
         let refine = whole
@@ -68,6 +97,7 @@ impl Reader {
             known: names
                 .filter(|name| !NOT_OF_JOBS.contains(&name.as_str()))
                 .collect(),
+            takes_addresses,
         }
     }
 
@@ -103,7 +133,7 @@ impl Reader {
                                 .filter_map(|text| file_of_cameras(text)),
                         );
                     }
-                    if ["picture", "proof"].contains(&known) {
+                    if WRITING.contains(&known) {
                         job.others.extend(value.texts());
                     }
                     job.options.extend(value.words(known));
@@ -114,7 +144,7 @@ impl Reader {
         if !has_input {
             return Err("it has no 'input'".to_owned());
         }
-        if job.input == "-" || job.written().any(|path| path.as_os_str() == "-") {
+        if job.input == "-" || job.written().any(|name| name == "-") {
             return Err("standard input and output are not for jobs".to_owned());
         }
         if is_dry {
@@ -123,10 +153,26 @@ impl Reader {
         } else if job.output.is_none() {
             return Err("it has no 'output'".to_owned());
         }
-        if let Some(folder) = job.written().find(|path| is_folder(path)) {
-            return Err(format!("{} is a folder; give a file", folder.display()));
+        if let Some(folder) = job.written().find(|name| is_folder(Path::new(name))) {
+            return Err(format!("{folder} is a folder; give a file"));
         }
+        self.check_addresses(&job)?;
         Ok(job)
+    }
+}
+
+impl Reader {
+    /// Whether files are where they can be reached.
+    fn check_addresses(&self, job: &Job) -> Result<(), String> {
+        if let Some(name) = job.option_files.iter().find(|name| is_address(name)) {
+            return Err(format!("{name} is an address; give a file of this machine"));
+        }
+        match job.files().find(|name| is_address(name)) {
+            Some(name) if !self.takes_addresses => Err(format!(
+                "{name} is an address; limitmesh.batch of the Python package copies such files"
+            )),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -234,6 +280,7 @@ impl Claims {
     pub(super) fn write(&mut self, job: &Job, line: usize) -> Result<(), String> {
         let files: Vec<(FileIdentity, &Path)> = job
             .written()
+            .map(Path::new)
             .map(|path| (FileIdentity::of(path), path))
             .collect();
         for (i, (file, path)) in files.iter().enumerate() {
@@ -263,7 +310,7 @@ mod tests {
     use super::*;
 
     fn job(line: &str) -> Result<Job, String> {
-        Reader::new().job(line.as_bytes())
+        Reader::new(false).job(line.as_bytes())
     }
 
     #[test]
@@ -297,6 +344,10 @@ mod tests {
             (r#"{"input": "-", "output": "a.ply"}"#, "standard input"),
             (r#"{"input": "a.obj", "output": "b/"}"#, "a folder"),
             (
+                r#"{"input": "a.obj", "output": "s3://bucket/b.ply"}"#,
+                "limitmesh.batch of the Python package",
+            ),
+            (
                 r#"{"input": "a.obj", "output": "b.ply", "optimise": false}"#,
                 "'optimise' is no option",
             ),
@@ -317,11 +368,30 @@ mod tests {
             assert!(what.contains(words), "{line}: {what}");
         }
         assert!(
-            Reader::new()
+            Reader::new(false)
                 .job(b"{\"input\": \"\xff\"}")
                 .unwrap_err()
                 .contains("UTF-8")
         );
         assert!(job(r#"{"input": "a.obj", "dry-run": true}"#).is_ok());
+    }
+
+    #[test]
+    fn addresses_are_for_who_takes_them() {
+        let of = |line: &str| Reader::new(true).job(line.as_bytes());
+        let mut job =
+            of(r#"{"input": "s3://b/a.obj", "output": "s3://b/a.ply", "picture": "s3://b/a.png"}"#)
+                .unwrap();
+        job.rename("s3://b/a.png", "here.png");
+        assert_eq!(
+            (&job.others, &job.options),
+            (
+                &vec!["here.png".to_owned()],
+                &vec!["--picture=here.png".to_owned()]
+            )
+        );
+        let what = of(r#"{"input": "a.obj", "output": "a.ply", "view": "s3://b/views.json"}"#)
+            .unwrap_err();
+        assert!(what.contains("give a file of this machine"), "{what}");
     }
 }

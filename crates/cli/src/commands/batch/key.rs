@@ -16,11 +16,11 @@ use crate::report::VERSION;
 /// Read at once.
 const BLOCK: usize = 1 << 16;
 
-/// The key of a job, in hexadecimal digits.
+/// The key of a job, in hexadecimal digits; its input is read from this file.
 ///
 /// # Errors
 /// A file cannot be read.
-pub(super) fn key(job: &Job) -> io::Result<String> {
+pub(super) fn key(job: &Job, input: &str) -> io::Result<String> {
     let mut hash = Sha256::new();
     part(&mut hash, VERSION.as_bytes());
     let extension = |path: &str| {
@@ -44,11 +44,11 @@ pub(super) fn key(job: &Job) -> io::Result<String> {
     for path in &job.option_files {
         file(&mut hash, Path::new(path))?;
     }
-    let path = Path::new(&job.input);
+    let path = Path::new(input);
     if let Some(model) = input::builtin_name(path) {
         part(&mut hash, model.as_bytes());
     } else {
-        let extension = extension(&job.input);
+        let extension = extension(input);
         part(&mut hash, extension.as_encoded_bytes());
         file(&mut hash, path)?;
         if extension == "gltf" || extension == "glb" {
@@ -114,7 +114,7 @@ mod tests {
             at("b.obj", "v 0 0 0"),
             at("c.obj", "v 0 0 1"),
         );
-        let of = |job: Job| key(&job).unwrap();
+        let of = |job: Job| key(&job, &job.input).unwrap();
         let first = of(job(&a, "x.ply", &["--tolerance=1"]));
         assert_eq!(first.len(), 64);
         assert_eq!(of(job(&b, "y.PLY", &["--tolerance=1"])), first);
@@ -127,7 +127,10 @@ mod tests {
         ] {
             assert_ne!(of(other), first);
         }
-        assert!(key(&job("none.obj", "x.ply", &[])).is_err());
+        let elsewhere = job("s3://bucket/a.obj", "x.ply", &["--tolerance=1"]);
+        assert_eq!(key(&elsewhere, &a).unwrap(), first);
+        let none = job("none.obj", "x.ply", &[]);
+        assert!(key(&none, &none.input).is_err());
     }
 
     #[test]
@@ -140,14 +143,14 @@ mod tests {
             std::fs::write(folder.path().join("a b.bin"), bytes).unwrap();
             let input = folder.path().join("a.gltf").display().to_string();
             let none = Vec::new;
-            key(&Job {
+            let job = Job {
                 input,
                 output: None,
                 others: none(),
                 option_files: none(),
                 options: none(),
-            })
-            .unwrap()
+            };
+            key(&job, &job.input).unwrap()
         };
         assert_ne!(of("abc"), of("abd"));
         assert_eq!(of("abc"), of("abc"));

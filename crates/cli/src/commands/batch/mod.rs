@@ -10,6 +10,7 @@
 mod job;
 mod key;
 mod process;
+mod remote;
 mod results;
 mod status;
 
@@ -24,9 +25,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
+use limitmesh::progress::{Stage, Watch};
 use serde_json::value::RawValue;
 
-use crate::arguments::BatchArguments;
+use crate::arguments::{BatchArguments, Shard};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, seconds, thousands};
 use crate::input;
@@ -36,6 +38,8 @@ use crate::progress::Progress;
 use job::{Claims, Job, Reader};
 pub(super) use process::Verdict;
 use process::{Ended, Limits, Starter};
+pub use remote::RemoteFiles;
+use remote::{Copied, is_address};
 use results::{EarlierResults, Place, Results};
 #[cfg(test)]
 pub(crate) use status::Line as BatchLine;
@@ -79,10 +83,30 @@ pub(crate) fn run(
     threads: usize,
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
-    check(arguments)?;
     let start = Instant::now();
+    let counts = work(arguments, program, threads, None, progress)?;
+    let took = seconds(start.elapsed().as_secs_f64());
+    progress.note(format!("{}; {took}", counts.in_words()));
+    let jobs = counted(counts.jobs, "job", "jobs");
+    let failed = thousands(counts.failed);
+    anyhow::ensure!(counts.failed == 0, "{failed} of {jobs} failed");
+    Ok(match counts.short {
+        0 => Outcome::Done,
+        short => Outcome::StoppedShort(format!("{} of {jobs}", thousands(short))),
+    })
+}
+
+/// Does the jobs, with files at addresses if the caller copies these.
+pub(crate) fn work(
+    arguments: &BatchArguments,
+    program: &[OsString],
+    threads: usize,
+    remote: Option<&dyn RemoteFiles>,
+    progress: &Progress,
+) -> anyhow::Result<BatchCounts> {
+    check(arguments)?;
     progress.stage("reading the jobs");
-    let tasks = tasks(arguments)?;
+    let tasks = tasks(arguments, remote.is_some())?;
     interrupt::leave_to_caller();
     let (results, earlier) = Results::open(&arguments.output, arguments.resume)?;
     make_folders(&tasks)?;
@@ -105,19 +129,10 @@ pub(crate) fn run(
         starter,
         earlier,
         with_seconds,
+        remote,
     };
     let name = output_name(arguments);
-    let jobs = tasks.len();
-    let counts = batch.run(tasks, processes, results, &name, progress)?;
-    let took = seconds(start.elapsed().as_secs_f64());
-    progress.note(format!("{}; {took}", counts.in_words(jobs)));
-    let jobs = counted(jobs, "job", "jobs");
-    let failed = thousands(counts.failed);
-    anyhow::ensure!(counts.failed == 0, "{failed} of {jobs} failed");
-    Ok(match counts.short {
-        0 => Outcome::Done,
-        short => Outcome::StoppedShort(format!("{} of {jobs}", thousands(short))),
-    })
+    batch.run(tasks, processes, results, &name, progress)
 }
 
 fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
@@ -132,8 +147,8 @@ fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The jobs by their lines; blank lines are none.
-fn tasks(arguments: &BatchArguments) -> anyhow::Result<Vec<Task>> {
+/// The jobs of the shard by their lines; blank lines are none.
+fn tasks(arguments: &BatchArguments, takes_addresses: bool) -> anyhow::Result<Vec<Task>> {
     let name = input::display_name(&arguments.jobs);
     let mut bytes = Vec::new();
     let read = match output::is_standard_output(&arguments.jobs) {
@@ -141,7 +156,7 @@ fn tasks(arguments: &BatchArguments) -> anyhow::Result<Vec<Task>> {
         false => std::fs::read(&arguments.jobs).map(|all| bytes = all),
     };
     read.with_context(|| format!("{name} cannot be read"))?;
-    let reader = Reader::new();
+    let reader = Reader::new(takes_addresses);
     let lines = bytes.split(|&byte| byte == b'\n').enumerate();
     let lines = lines.filter(|(_, line)| !line.trim_ascii().is_empty());
     let mut tasks: Vec<Task> = lines
@@ -168,6 +183,9 @@ fn tasks(arguments: &BatchArguments) -> anyhow::Result<Vec<Task>> {
             task.job = Err(what);
         }
     }
+    // After all of them said what they read and write, so that a result does not depend on the shard.
+    let shard = arguments.shard;
+    tasks.retain(|task| shard.is_none_or(|shard: Shard| shard.has(task.line)));
     Ok(tasks)
 }
 
@@ -184,9 +202,10 @@ fn make_folders(tasks: &[Task]) -> anyhow::Result<()> {
     let written = tasks
         .iter()
         .filter_map(|task| task.job.as_ref().ok())
-        .flat_map(Job::written);
+        .flat_map(Job::written)
+        .filter(|name| !is_address(name));
     let mut last = None;
-    for folder in written.filter_map(Path::parent) {
+    for folder in written.filter_map(|name| Path::new(name).parent()) {
         if last.replace(folder) != Some(folder) {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("the folder {} cannot be made", folder.display()))?;
@@ -196,31 +215,38 @@ fn make_folders(tasks: &[Task]) -> anyhow::Result<()> {
 }
 
 /// The common data of all jobs.
-struct Batch {
+struct Batch<'a> {
     starter: Starter,
     earlier: EarlierResults,
     with_seconds: bool,
+    remote: Option<&'a dyn RemoteFiles>,
 }
 
 /// How many results there are of each kind.
-#[derive(Default)]
-struct Counts {
-    kept: usize,
-    done: usize,
-    short: usize,
-    failed: usize,
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BatchCounts {
+    /// Jobs of the shard.
+    pub jobs: usize,
+    /// Results that were there and hold.
+    pub kept: usize,
+    /// Jobs that met all goals.
+    pub done: usize,
+    /// Jobs that a cap ended before that.
+    pub short: usize,
+    /// Jobs without a result.
+    pub failed: usize,
 }
 
-impl Counts {
+impl BatchCounts {
     fn all(&self) -> usize {
         self.done + self.short + self.failed
     }
 
-    fn in_words(&self, jobs: usize) -> String {
+    fn in_words(&self) -> String {
         let mut words = format!(
             "{} of {} ended",
             thousands(self.all()),
-            counted(jobs, "job", "jobs")
+            counted(self.jobs, "job", "jobs")
         );
         let parts = [
             (self.failed, "failed"),
@@ -234,7 +260,7 @@ impl Counts {
     }
 }
 
-impl Batch {
+impl Batch<'_> {
     fn run(
         &self,
         tasks: Vec<Task>,
@@ -242,11 +268,16 @@ impl Batch {
         mut results: Results,
         name: &str,
         progress: &Progress,
-    ) -> anyhow::Result<Counts> {
+    ) -> anyhow::Result<BatchCounts> {
         let jobs = tasks.len();
         tasks.iter().for_each(|task| results.expect(task.line));
         let tasks = Mutex::new(VecDeque::from(tasks));
-        let mut counts = Counts::default();
+        let mut counts = BatchCounts {
+            jobs,
+            ..BatchCounts::default()
+        };
+        let mut observer = |at: &limitmesh::progress::Progress| progress.answer(at);
+        let mut watch = Watch::new(&mut observer, Stage::Refining);
         let (sender, receiver) = channel();
         thread::scope(|scope| -> anyhow::Result<()> {
             for _ in 0..processes.min(jobs) {
@@ -256,10 +287,14 @@ impl Batch {
             drop(sender);
             let mut noted = Instant::now();
             let outcome = loop {
-                progress.stage(format!("refining: {}", counts.in_words(jobs)));
+                progress.stage(format!("refining: {}", counts.in_words()));
+                let reported = watch.stage(Stage::Refining, Some(jobs));
+                if let Err(why) = reported.and_then(|()| watch.done(counts.all())) {
+                    break Err(why.into());
+                }
                 if noted.elapsed() > TELL {
                     noted = Instant::now();
-                    progress.note_where_nothing_moves(counts.in_words(jobs));
+                    progress.note_where_nothing_moves(counts.in_words());
                 }
                 let (line, result) = match receiver.recv_timeout(LOOK) {
                     Ok(ended) => ended,
@@ -296,7 +331,7 @@ impl Batch {
             outcome
         })?;
         if interrupt::is_asked() {
-            progress.stage(format!("refining: {}", counts.in_words(jobs)));
+            progress.stage(format!("refining: {}", counts.in_words()));
             progress.clear();
             interrupt::end_as_asked(name.to_owned());
         }
@@ -334,19 +369,37 @@ impl Batch {
                 });
             }
         };
-        let key = key::key(job).ok();
+        let copied = Copied::of(job)?.zip(self.remote);
+        let fetched = copied.as_ref().map(|(own, remote)| own.fetch(*remote));
+        let here = copied.as_ref().map_or(job, |(own, _)| &own.job);
+        let key = key::key(job, &here.input).ok();
         if let Some(earlier) = key.as_ref().and_then(|key| self.kept(key, job)) {
             return Ok(earlier);
         }
-        let Some(status) = self.status(job)? else {
-            return Ok(Fate::Cancelled);
+        let mut status = match fetched {
+            Some(Err(what)) => failed(Kind::File, None, what),
+            _ => match self.status(here)? {
+                Some(status) => status,
+                None => return Ok(Fate::Cancelled),
+            },
         };
-        new(Line {
+        if let (Some((own, remote)), true) = (&copied, status.has_output())
+            && let Err(what) = own.store(*remote)
+        {
+            status = failed(Kind::File, None, what);
+        }
+        let result = Line {
             line: task.line,
             key: key.as_deref(),
             input: Some(&job.input),
             output: job.output.as_deref(),
             status,
+        };
+        Ok(match (new(result)?, copied) {
+            (Fate::New(text, standing), Some((own, _))) => {
+                Fate::New(own.with_addresses(&text), standing)
+            }
+            (fate, _) => fate,
         })
     }
 
@@ -370,7 +423,7 @@ impl Batch {
         };
         let on_one_line = |report: &RawValue| status::on_one_line(report, self.with_seconds);
         let report = report.as_deref().map(on_one_line).transpose()?;
-        let output_bytes = size(job);
+        let output_bytes = self.size(job.output.as_deref());
         Ok(Some(match (verdict, report) {
             (Verdict::Done, Some(report)) => JobStatus::Done {
                 output_bytes,
@@ -409,15 +462,18 @@ impl Batch {
             None => Standing::Done,
         };
         let is_there = matches!(standing, Standing::Failed(_))
-            || size(job) == earlier.output_bytes && job.written().all(Path::exists);
+            || self.size(job.output.as_deref()) == earlier.output_bytes
+                && job.written().all(|name| self.size(Some(name)).is_some());
         is_there.then(|| Fate::Kept(earlier.place, standing))
     }
-}
 
-/// Bytes of the mesh that a job wrote.
-fn size(job: &Job) -> Option<u64> {
-    let path = job.output.as_ref()?;
-    std::fs::metadata(path).ok().map(|file| file.len())
+    /// Bytes of a file, if there is one.
+    fn size(&self, name: Option<&str>) -> Option<u64> {
+        match (name?, self.remote) {
+            (name, Some(remote)) if is_address(name) => remote.size(name),
+            (name, _) => std::fs::metadata(name).ok().map(|file| file.len()),
+        }
+    }
 }
 
 fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> JobStatus {

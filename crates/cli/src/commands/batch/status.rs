@@ -53,6 +53,13 @@ pub(super) enum JobStatus {
     },
 }
 
+impl JobStatus {
+    /// Whether files were written.
+    pub(super) fn has_output(&self) -> bool {
+        !matches!(self, Self::Failed { .. })
+    }
+}
+
 /// Why a job failed.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
