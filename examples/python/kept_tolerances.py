@@ -13,6 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -173,14 +174,15 @@ def own(shape: Shape) -> Iterator[Row]:
     elif shape.scad:
         ways = [{}, {"interpolate": True}, {"interpolate": True, "balance": True}]
     for way in ways:
-        yield ", ".join(["limitmesh", *way]), f"tolerance {ASKED}", lambda way=way: made(asked | way), None
-    if {"interpolate": True} in ways:
-        # The control points whose limits are the vertices.
-        control = linalg.spsolve(limits(*shape.mesh).tocsc(), shape.mesh[0])
-        surface = loop((control, shape.mesh[1]), 5)
-        yield "… interpolate, against its own surface", f"tolerance {ASKED}", lambda: made(asked | {"interpolate": True}), surface
+        make = partial(made, asked | way)
+        name = ", ".join(["limitmesh", *way])
+        yield name, f"tolerance {ASKED}", make, None
+        if way == {"interpolate": True}:
+            # The control points whose limits are the vertices.
+            control = linalg.spsolve(limits(*shape.mesh).tocsc(), shape.mesh[0])
+            yield f"{name}, against its own surface", f"tolerance {ASKED}", make, loop((control, shape.mesh[1]), 5)
     if not shape.scad:
-        yield "limitmesh, uniform", "level 2", lambda: made({"method": "uniform", "levels": 2}), None
+        yield "limitmesh, uniform", "level 2", partial(made, {"method": "uniform", "levels": 2}), None
 
 
 def openscad(shape: Shape) -> Iterator[Row]:
@@ -196,7 +198,7 @@ def openscad(shape: Shape) -> Iterator[Row]:
         # So many sides have a sagitta of the tolerance.
         sides = int(np.ceil(np.pi / np.arccos(1 - ASKED / shape.radius)))
         for setting in (f"$fs = {ASKED}", f"$fn = {sides}"):
-            yield "OpenSCAD", f"`{setting}`", lambda setting=setting: made(setting), None
+            yield "OpenSCAD", f"`{setting}`", partial(made, setting), None
 
 
 def manifold(shape: Shape) -> Iterator[Row]:
@@ -260,9 +262,9 @@ def by_level(shape: Shape) -> Iterator[Row]:
         return meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
 
     for level in (2,) if shape.scad else (2, 3):
-        yield "trimesh, Loop", f"level {level}", lambda level=level: trimesh.remesh.subdivide_loop(*shape.mesh, iterations=level), None
+        yield "trimesh, Loop", f"level {level}", partial(trimesh.remesh.subdivide_loop, *shape.mesh, iterations=level), None
         if find_spec("pymeshlab"):
-            yield "MeshLab, Loop", f"level {level}", lambda level=level: meshlab(level), None
+            yield "MeshLab, Loop", f"level {level}", partial(meshlab, level), None
 
 
 # Tables.
@@ -289,7 +291,7 @@ def table(shape: Shape) -> None:
         for name, asked, make, truth in tool(shape):
             mesh, seconds = timed(make)
             off = got(mesh, truth or shape.truth)
-            print(f"| {name} | {asked} | {off:.3f} | {'yes' if off <= ASKED else 'no'} | {len(mesh[1]):,} | {seconds:.3f} |", flush=True)
+            print(f"| {name} | {asked} | {off:.4f} | {'yes' if off <= ASKED else 'no'} | {len(mesh[1]):,} | {seconds:.3f} |", flush=True)
 
 
 for shape in (sphere(), cylinder(), torus(), cage("bunny", "rabbit"), cage("cup", "cup")):
