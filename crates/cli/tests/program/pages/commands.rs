@@ -3,7 +3,8 @@
 //! The commands of a page run one after the other through a shell in a folder with the files of `examples/models`, so that one
 //! can use what an earlier one wrote. What a command prints, on both streams, is compared line by line with what follows it on the page.
 //! Durations are not compared, a line `...` is any number of lines, and an exit code other than 0 is a last line `exit code N`.
-//! `LIMITMESH_REWRITE=1` puts what the program says into the page.
+//! Pictures in the folder that is called as the page (`pictures/gallery` of `gallery.md`) are those that its commands draw, to the byte.
+//! `LIMITMESH_REWRITE=1` puts what the program says into the page, and writes these pictures.
 
 #![cfg(unix)]
 
@@ -11,6 +12,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
 
+use super::links::targets;
 use super::{Page, pages};
 use crate::common::folder;
 use crate::kept::{is_rewriting, root};
@@ -125,6 +127,35 @@ fn checked(page: &Page) -> Vec<String> {
         std::fs::write(root().join(&page.name), anew.join("\n") + "\n")
             .expect("the page can be written");
         wrong.clear();
+    }
+    wrong.extend(pictures(page, folder.path()));
+    wrong
+}
+
+/// Compares the pictures of a page with those that its commands have drawn; gives what is wrong, or writes them anew.
+fn pictures(page: &Page, drawn: &Path) -> Vec<String> {
+    let file = root().join(&page.name);
+    let own = Path::new("pictures").join(file.file_stem().expect("a name"));
+    let mut wrong = Vec::new();
+    for target in targets(&page.text) {
+        let target = Path::new(target);
+        if target.parent() != Some(&own) {
+            continue;
+        }
+        let kept = file.with_file_name("").join(target);
+        let anew = std::fs::read(drawn.join(target.file_name().expect("a name")));
+        match anew {
+            Err(_) => wrong.push(format!(
+                "{}: no command draws {}",
+                page.name,
+                target.display()
+            )),
+            Ok(anew) if is_rewriting() => std::fs::write(&kept, anew).expect("written"),
+            Ok(anew) if std::fs::read(&kept).ok().as_ref() != Some(&anew) => {
+                wrong.push(format!("{}: {} differs", page.name, target.display()));
+            }
+            Ok(_) => {}
+        }
     }
     wrong
 }

@@ -70,7 +70,7 @@ fn the_readme_is_short() {
 }
 
 /// The links of a page below the repository, outside code.
-fn targets(text: &str) -> Vec<&str> {
+pub(super) fn targets(text: &str) -> Vec<&str> {
     let mut is_code = false;
     let mut found = Vec::new();
     for line in text.lines() {
