@@ -1,10 +1,44 @@
 //! Four numbers at once. The compiler makes vector instructions of them where the processor has some; each lane is rounded as a
 //! single number would be, so that results are the same on every processor.
 //!
-//! Comparisons give masks, whose lanes have all bits set or none, for [`bitselect`](F64x4::bitselect) and `&`.
+//! Comparisons give masks, which select among numbers.
 
 use core::array::from_fn;
-use core::ops::{Add, AddAssign, BitAnd, BitAndAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, BitAnd, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// What is so of which of four numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Mask([bool; 4]);
+
+impl Mask {
+    pub(crate) const ALL: Self = Self([true; 4]);
+
+    #[inline(always)]
+    pub(crate) fn any(self) -> bool {
+        let [a, b, c, d] = self.0;
+        a | b | c | d
+    }
+
+    /// By lane the first number where it is so, and else the second.
+    #[inline(always)]
+    pub(crate) fn select<L: Lanes>(self, so: L, otherwise: L) -> L {
+        L::selected(self, so, otherwise)
+    }
+}
+
+impl BitAnd for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(from_fn(|lane| self.0[lane] & other.0[lane]))
+    }
+}
+
+/// What masks select.
+pub(crate) trait Lanes {
+    /// See [`Mask::select`].
+    fn selected(mask: Mask, so: Self, otherwise: Self) -> Self;
+}
 
 /// Implements an operator lane by lane, also with a single number on either side.
 macro_rules! operator {
@@ -38,10 +72,8 @@ macro_rules! operator {
 macro_rules! comparison {
     ($function:ident, $operator:tt) => {
         #[inline(always)]
-        pub(crate) fn $function(self, other: Self) -> Self {
-            Self(from_fn(|lane| {
-                Self::mask(self.0[lane] $operator other.0[lane])
-            }))
+        pub(crate) fn $function(self, other: Self) -> Mask {
+            Mask(from_fn(|lane| self.0[lane] $operator other.0[lane]))
         }
     };
 }
@@ -58,7 +90,7 @@ macro_rules! assignment {
 }
 
 macro_rules! lanes {
-    ($(#[$about:meta])* $lanes:ident, $real:ty, $bits:ty) => {
+    ($(#[$about:meta])* $lanes:ident, $real:ty) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         #[repr(align(16))]
@@ -82,11 +114,6 @@ macro_rules! lanes {
             #[inline(always)]
             pub(crate) const fn to_array(self) -> [$real; 4] {
                 self.0
-            }
-
-            #[inline(always)]
-            fn mask(is_set: bool) -> $real {
-                <$real>::from_bits(if is_set { <$bits>::MAX } else { 0 })
             }
 
             #[inline(always)]
@@ -122,28 +149,24 @@ macro_rules! lanes {
             comparison!(simd_lt, <);
             comparison!(simd_le, <=);
 
-            /// By lane of a mask, the first number where it is set, and else the second.
-            #[inline(always)]
-            pub(crate) fn bitselect(self, set: Self, unset: Self) -> Self {
-                Self(from_fn(|lane| {
-                    let mask = self.0[lane].to_bits();
-                    <$real>::from_bits(
-                        mask & set.0[lane].to_bits() | !mask & unset.0[lane].to_bits(),
-                    )
-                }))
-            }
-
             /// The sum of the lanes.
             #[inline(always)]
             pub(crate) fn sum(self) -> $real {
                 let [a, b, c, d] = self.0;
                 (a + b) + (c + d)
             }
+        }
 
-            /// Whether a lane of a mask is set.
+        impl Lanes for $lanes {
             #[inline(always)]
-            pub(crate) fn any(self) -> bool {
-                self.0.iter().fold(0, |all, lane| all | lane.to_bits()) != 0
+            fn selected(mask: Mask, so: Self, otherwise: Self) -> Self {
+                Self(from_fn(|lane| {
+                    if mask.0[lane] {
+                        so.0[lane]
+                    } else {
+                        otherwise.0[lane]
+                    }
+                }))
             }
         }
 
@@ -162,16 +185,6 @@ macro_rules! lanes {
             }
         }
 
-        impl BitAnd for $lanes {
-            type Output = Self;
-            #[inline(always)]
-            fn bitand(self, other: Self) -> Self {
-                Self(from_fn(|lane| {
-                    <$real>::from_bits(self.0[lane].to_bits() & other.0[lane].to_bits())
-                }))
-            }
-        }
-
         operator!($lanes, $real, Add, add);
         operator!($lanes, $real, Sub, sub);
         operator!($lanes, $real, Mul, mul);
@@ -179,19 +192,16 @@ macro_rules! lanes {
         assignment!($lanes, AddAssign, add_assign, add);
         assignment!($lanes, SubAssign, sub_assign, sub);
         assignment!($lanes, MulAssign, mul_assign, mul);
-        assignment!($lanes, BitAndAssign, bitand_assign, bitand);
     };
 }
 
 lanes!(
     /// Four numbers in double precision.
     F64x4,
-    f64,
-    u64
+    f64
 );
 lanes!(
     /// Four numbers in single precision.
     F32x4,
-    f32,
-    u32
+    f32
 );

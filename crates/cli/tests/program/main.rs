@@ -41,7 +41,6 @@ mod refine;
 mod render;
 mod reproduce;
 mod restricted;
-mod same_bytes;
 mod shading;
 mod shared_models;
 mod size;

@@ -227,7 +227,7 @@ impl Bent {
         let is_known = (sum + curve + steep).simd_lt(F64x4::splat(TOO_GREAT));
         BentFour {
             bends: bends.map(|bend| bend.map(single)),
-            rest: single(is_known.bitselect(above(height), F64x4::splat(f64::INFINITY))),
+            rest: single(is_known.select(above(height), F64x4::splat(f64::INFINITY))),
             curve: single(above(curve)),
             steep: single(above(steep)),
             first: single(above(first)),

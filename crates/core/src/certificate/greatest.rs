@@ -37,13 +37,11 @@ struct Greatest<'a> {
     beyond: bool,
 }
 
-/// All bits of trilinear coordinates, and those of a height but its sign.
-const UNSIGNED_HEIGHT: [u64; 4] = [u64::MAX >> 1, u64::MAX, u64::MAX, u64::MAX];
-
 /// The point with the absolute height.
 #[inline(always)]
 fn with_size(Trilinear(point): Trilinear) -> F64x4 {
-    point & F64x4::new(UNSIGNED_HEIGHT.map(f64::from_bits))
+    let [height, a, b, c] = point.to_array();
+    F64x4::new([height.abs(), a, b, c])
 }
 
 /// The bound of a net, `None` if its points have to be tested one by one, and a height that the
@@ -214,15 +212,16 @@ impl<'a> Greatest<'a> {
         let on_edge = F64x4::splat(self.frame.on_edge);
         let side = out.abs();
         let is_off = side.simd_gt(on_edge);
-        let swings = is_off & (side / room);
+        let swings = is_off.select(side / room, F64x4::ZERO);
         let outside = out.simd_gt(on_edge);
         self.squared = self.squared.larger(greatest(heights * heights + out * out));
         self.side = self.side.larger(greatest(side));
         self.swings[edge] = self.swings[edge].larger(greatest(swings));
-        self.slopes[edge] = self.slopes[edge].larger(greatest(outside & swings));
-        self.displacements[edge] = self.displacements[edge].larger(greatest(outside & out));
+        self.slopes[edge] = self.slopes[edge].larger(greatest(outside.select(swings, F64x4::ZERO)));
+        self.displacements[edge] =
+            self.displacements[edge].larger(greatest(outside.select(out, F64x4::ZERO)));
         self.edge_heights[edge] = self.edge_heights[edge].larger(greatest(heights.abs()));
-        let rooms = is_off.bitselect(room, room + on_edge);
+        let rooms = is_off.select(room, room + on_edge);
         self.beyond |= rooms.simd_lt(F64x4::ZERO).any();
     }
 

@@ -11,7 +11,7 @@ use super::super::deviation::SHARPEST;
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
 use super::super::triangle_frame::SLIVER;
 use super::{BentFour, FOUR, Vectors, cross, dot, minus};
-use crate::lanes::F64x4;
+use crate::lanes::{F64x4, Mask};
 
 /// Four triangles that have neighbours beyond all edges. By corner, axis and triangle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,7 +47,7 @@ struct Triangle {
     area: F64x4,
     normal: Vectors,
     /// All corners are numbers, and rounding does not decide the plane.
-    has_plane: F64x4,
+    has_plane: Mask,
 }
 
 /// The distances of parts of the surface from the edges of their triangles.
@@ -59,7 +59,7 @@ struct EdgeDeviations {
     /// The greatest slopes of how far curves reach over the edges.
     slopes: [F64x4; 3],
     /// Whether each curve stays within the angles at its edge.
-    is_plain: F64x4,
+    is_plain: Mask,
 }
 
 /// The squared chords of the angles to the neighbours, the greatest slopes of tangential
@@ -67,7 +67,7 @@ struct EdgeDeviations {
 struct Around {
     squared: [F64x4; 3],
     slopes: [F64x4; 3],
-    is_known: F64x4,
+    is_known: Mask,
 }
 
 impl MovedFour {
@@ -113,7 +113,7 @@ impl MovedFour {
         let twice = 2.0 * aside;
         let part = at_corners
             .simd_gt(F64x4::ZERO)
-            .bitselect((apart - twice) / at_corners, F64x4::ONE);
+            .select((apart - twice) / at_corners, F64x4::ONE);
         for (edge, squared) in around.squared.into_iter().enumerate() {
             is_helped = is_helped & within(edge) & squared.simd_le(F64x4::splat(SHARPEST));
             let (chord, times) = (squared.sqrt(), 1.0 + 0.5 * squared);
@@ -121,7 +121,7 @@ impl MovedFour {
             let reach = 0.125 * outward + curve + aside;
             // As `share_beyond` in `quartic_cell` has it.
             let room = triangle.area / triangle.lengths[edge] * (1.0 - DIRECTIONS * turn);
-            let share = room.simd_gt(reach).bitselect(reach / room, F64x4::ONE);
+            let share = room.simd_gt(reach).select(reach / room, F64x4::ONE);
             let along = Along {
                 ends: [lifts[edge], lifts[(edge + 1) % 3]].map(|lift| times * part * lift),
                 bend: times * part * seen[edge],
@@ -131,16 +131,16 @@ impl MovedFour {
             let at_edge = along.greatest() + others;
             among = among.fast_max(at_edge.fast_min(apart * times + chord * reach));
         }
-        let bound = is_helped.bitselect(own.fast_min(among), own);
+        let bound = is_helped.select(own.fast_min(among), own);
         let share = 1.0 / scale;
         FoundFour {
             bound: is_plain
-                .bitselect(bound * share, F64x4::splat(f64::INFINITY))
+                .select(bound * share, F64x4::splat(f64::INFINITY))
                 .to_array(),
             height: (height * share).to_array(),
             least: triangle
                 .has_plane
-                .bitselect((height - rest) * share, F64x4::ZERO)
+                .select((height - rest) * share, F64x4::ZERO)
                 .to_array(),
         }
     }
@@ -163,7 +163,7 @@ impl Along {
             let (rise, bend) = (to - from, self.outward - sign * self.bend);
             let inner = from + 0.5 * rise + 0.125 * bend + 0.5 * rise * rise / bend;
             let is_met = bend.simd_gt(2.0 * rise.abs());
-            from.fast_max(to).fast_max(is_met.bitselect(inner, from))
+            from.fast_max(to).fast_max(is_met.select(inner, from))
         };
         on_side(1.0).fast_max(on_side(-1.0))
     }
@@ -206,10 +206,10 @@ impl MovedFour {
         let normal_deviation = most.sqrt() + 1e-12;
         SeenFour {
             normal_deviation: is_known
-                .bitselect(normal_deviation, F64x4::splat(2.0))
+                .select(normal_deviation, F64x4::splat(2.0))
                 .to_array(),
             slope: is_known
-                .bitselect(triangle.area / a.fast_max(b).fast_max(c), F64x4::ZERO)
+                .select(triangle.area / a.fast_max(b).fast_max(c), F64x4::ZERO)
                 .to_array(),
         }
     }
@@ -316,7 +316,7 @@ impl Triangle {
         let mut around = Around {
             squared: [F64x4::ZERO; 3],
             slopes: free,
-            is_known: F64x4::ZERO.simd_le(F64x4::ZERO),
+            is_known: Mask::ALL,
         };
         for edge in 0..3 {
             let out = minus(&opposite[edge].map(|axis| axis * scale), &corners[edge]);
@@ -343,8 +343,8 @@ impl Triangle {
 #[inline(always)]
 pub(super) fn quadratic_range([p, q, s]: [F64x4; 3], [a, b, c]: [F64x4; 3]) -> (F64x4, F64x4) {
     let (mut low, mut high) = (a.fast_min(b).fast_min(c), a.fast_max(b).fast_max(c));
-    let mut take = |is_met: F64x4, value: F64x4| {
-        let value = is_met.bitselect(value, a);
+    let mut take = |is_met: Mask, value: F64x4| {
+        let value = is_met.select(value, a);
         (low, high) = (low.fast_min(value), high.fast_max(value));
     };
     for (bend, from, to) in [(p, a, b), (q, b, c), (s, c, a)] {

@@ -25,7 +25,7 @@
 
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
 use super::{Mark, RowExtent, RowTarget, WIDTH};
-use crate::lanes::F32x4;
+use crate::lanes::{F32x4, Mask};
 use crate::vector::Extremes;
 
 /// Parts that are measured together.
@@ -162,13 +162,13 @@ pub(super) fn measure(
         let bend = larger(seen.map(F32x4::abs)) + 1.6 * triangle.unsure * size;
         let inside = room - DIRECTIONS as f32 * turn;
         let reach = edges.displacement * triangle.length;
-        let beyond = inside.simd_gt(reach).bitselect(reach / inside, F32x4::ONE);
+        let beyond = inside.simd_gt(reach).select(reach / inside, F32x4::ONE);
         let at_edges = 0.125 * bend + rest.curve + (bend + rest.first) * beyond;
         let among =
             at_edges.fast_min(height) * (1.0 + 0.5 * chord * chord) + chord * edges.displacement;
         let value = height.fast_max(among) * A_LITTLE_MORE;
         bound[i] = is_plain
-            .bitselect(value, F32x4::splat(f32::INFINITY))
+            .select(value, F32x4::splat(f32::INFINITY))
             .to_array();
         low[i] = (least - rest.height).to_array();
         normal_deviations[i] = normal_deviation.to_array();
@@ -206,7 +206,7 @@ struct EdgeDeviations {
     /// The greatest slope of that displacement, or of the inner part.
     slope: F32x4,
     /// Whether each curve stays within the angles at its edge.
-    is_plain: F32x4,
+    is_plain: Mask,
 }
 
 impl Triangle {
@@ -334,13 +334,14 @@ fn heights([p, q, s]: [F32x4; 3]) -> (F32x4, F32x4) {
         .simd_gt((UNKNOWN * most * most).fast_max(F32x4::splat(VANISHING)));
     let outside = F32x4::splat(-NEARLY);
     let is_inside = [l0, l1, l2].map(|l| (l * share).simd_gt(outside));
-    let known = is_known & is_inside[0] & is_inside[1] & is_inside[2] & inner;
+    let is_inner = is_known & is_inside[0] & is_inside[1] & is_inside[2];
+    let known = is_inner.select(inner, F32x4::ZERO);
     // The greatest bend of either sign, and all as it counts.
     let bends_up = larger([p, q, s]).simd_ge(most);
     let all = p + q + s;
-    let slope = 0.25 * (bends_up.bitselect(all, -all) - 2.0 * most);
+    let slope = 0.25 * (bends_up.select(all, -all) - 2.0 * most);
     let unknown = edges + slope.fast_max(F32x4::ZERO).fast_min(most * (1.0 / 24.0));
-    let above = is_known.bitselect(known * (1.0 + NEARLY), unknown);
+    let above = is_known.select(known * (1.0 + NEARLY), unknown);
     (edges.fast_max(known), edges.fast_max(above) * A_LITTLE_MORE)
 }
 
