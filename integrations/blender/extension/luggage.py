@@ -19,7 +19,8 @@ _TYPES: dict[str, tuple[str, int, npt.DTypeLike]] = {
     "FLOAT2": ("vector", 2, np.float32),
     "FLOAT_VECTOR": ("vector", 3, np.float32),
     "FLOAT_COLOR": ("color", 4, np.float32),
-    "BYTE_COLOR": ("color", 4, np.float32),
+    # Blended as they are stored, as Blender does.
+    "BYTE_COLOR": ("color_srgb", 4, np.float32),
     "QUATERNION": ("value", 4, np.float32),
     "FLOAT4X4": ("value", 16, np.float32),
     "INT": ("value", 1, np.int32),
@@ -82,7 +83,7 @@ class Attribute:
         # Sharp vertices stay where they are: no other vertex has part of their sharpness.
         return self.values.dtype.kind == "f" and self.name != "crease_vert"
 
-    def channel(self, corners: npt.NDArray[Any], uv: limitmesh._mesh.Interpolation) -> limitmesh.Channel | None:
+    def channel(self, mesh: bpy.types.Mesh, uv: limitmesh._mesh.Interpolation) -> limitmesh.Channel | None:
         """What limitmesh carries along; none for what elements inherit."""
         if self.domain == "POINT" and self.is_blended:
             return limitmesh.Channel(self.values)
@@ -91,14 +92,15 @@ class Attribute:
         if self.data_type != "FLOAT2":
             how: limitmesh._mesh.Interpolation = "linear" if self.is_blended else "nearest"
             return limitmesh.Channel(self.values, domain="corner", interpolation=how)
-        # Corners at one vertex with the same texture coordinates have no seam between them.
-        values, rows = np.unique(np.column_stack([corners, self.values]), axis=0, return_inverse=True)
-        return limitmesh.Channel(values[:, 1:], rows.reshape(-1), domain="corner", semantic="texture", interpolation=uv)
+        # Corners at one vertex with equal values have no seam between them. As in Blender, there is one where a texture is mirrored:
+        # the third value sees to that.
+        values = np.column_stack([self.values, _is_upright(mesh, self.values)])
+        return limitmesh.Channel(values, domain="corner", semantic="texture", interpolation=uv)
 
     def carried(self, key: str, sources: Sources) -> npt.NDArray[Any]:
         """The values on the refined mesh."""
         if self.domain == "CORNER":
-            return sources.at_corners(key)
+            return sources.at_corners(key)[:, :self.values.shape[1]]
         if self.domain == "POINT" and self.is_blended:
             return sources.at_vertices(key, self.values)
         inherited = {"FACE": sources.faces, "EDGE": sources.edges, "POINT": sources.nearest_vertices}
@@ -111,6 +113,16 @@ class Attribute:
         attribute.data.foreach_set(name, np.ascontiguousarray(values, dtype).reshape(-1))
 
 
+def _is_upright(mesh: bpy.types.Mesh, uv: Floats) -> npt.NDArray[np.bool_]:
+    """By corner, whether its face runs counter-clockwise on the texture, as Blender asks."""
+    starts, counts = read(mesh.polygons, "loop_start", dtype=np.int32), read(mesh.polygons, "loop_total", dtype=np.int32)
+    before = np.arange(len(uv)) - 1
+    before[starts] = starts + counts - 1
+    # The areas below the sides, in 32 bits as Blender adds them up: so rounding says the same of faces without area.
+    twice_areas = np.add.reduceat((uv[before, 0] - uv[:, 0]) * (uv[:, 1] + uv[before, 1]), starts)
+    return np.repeat(twice_areas > 0.0, counts)
+
+
 class Luggage:
     """All that an object's mesh carries. `left` names what cannot be carried."""
 
@@ -121,13 +133,12 @@ class Luggage:
         self.weights = _weights(mesh, len(self.groups))
         self.keys = [(block.name, read(block.data, "co", 3)) for block in mesh.shape_keys.key_blocks] if mesh.shape_keys else []
         self.uv = _UV_SMOOTH[modifier.uv_smooth if modifier else "PRESERVE_BOUNDARIES"]
-        self.corners = read(mesh.loops, "vertex_index", dtype=np.int32)
         self.uv_maps = (mesh.uv_layers.active_index, [layer.active_render for layer in mesh.uv_layers])
         self.colours = (mesh.attributes.active_color_name, mesh.attributes.default_color_name)
 
-    def channels(self) -> dict[str, limitmesh.Channel]:
+    def channels(self, mesh: bpy.types.Mesh) -> dict[str, limitmesh.Channel]:
         """What limitmesh carries along."""
-        found = {f"attribute {one.name}": one.channel(self.corners, self.uv) for one in self.attributes}
+        found = {f"attribute {one.name}": one.channel(mesh, self.uv) for one in self.attributes}
         if self.groups:
             found["weights"] = limitmesh.Channel(self.weights)
         # Where a vertex of the limit surface goes as control points move.

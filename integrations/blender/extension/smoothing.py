@@ -75,7 +75,7 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     options.tolerance = options.tolerance or _SIZE * control.diagonal
     luggage = Luggage(an_object, modifier)
     with progress(context) as told:
-        refined = refine(control, options.tolerance, options.most, options.scheme, channels=luggage.channels(), progress=told)
+        refined = refine(control, options.tolerance, options.most, options.scheme, channels=luggage.channels(an_object.data), progress=told)
     users = an_object.data.users
     moved = write(an_object, control, refined, luggage, scale)
     within = np.nextafter(refined.error.upper + moved, np.inf)
