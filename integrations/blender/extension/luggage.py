@@ -40,6 +40,9 @@ _UV_SMOOTH: dict[str, limitmesh._mesh.Interpolation] = {
     "SMOOTH_ALL": "smooth-none",
 }
 
+# The range is before the value, which has to be in it.
+_KEY_SETTINGS = ("slider_min", "slider_max", "value", "mute", "vertex_group", "interpolation", "lock_shape")
+
 
 @dataclass(frozen=True)
 class Sources:
@@ -116,10 +119,9 @@ class Attribute:
 def _is_upright(mesh: bpy.types.Mesh, uv: Floats) -> npt.NDArray[np.bool_]:
     """By corner, whether its face runs counter-clockwise on the texture, as Blender asks."""
     starts, counts = read(mesh.polygons, "loop_start", dtype=np.int32), read(mesh.polygons, "loop_total", dtype=np.int32)
-    before = np.arange(len(uv)) - 1
-    before[starts] = starts + counts - 1
-    # The areas below the sides, in 32 bits as Blender adds them up: so rounding says the same of faces without area.
-    twice_areas = np.add.reduceat((uv[before, 0] - uv[:, 0]) * (uv[:, 1] + uv[before, 1]), starts)
+    after = np.arange(len(uv)) + 1
+    after[starts + counts - 1] = starts
+    twice_areas = np.add.reduceat(uv[:, 0] * uv[after, 1] - uv[after, 0] * uv[:, 1], starts)
     return np.repeat(twice_areas > 0.0, counts)
 
 
@@ -173,22 +175,21 @@ class Luggage:
             block = an_object.shape_key_add(name=name, from_mix=False)
             block.data.foreach_set("co", sources.at_vertices(f"key {name}", positions).astype(np.float32).reshape(-1))
         new = an_object.data.shape_keys
-        _copy_settings(old, new)
+        _copy(old, new, "use_relative", "eval_time")
         for before, after in zip(old.key_blocks, new.key_blocks):
-            _copy_settings(before, after)
+            _copy(before, after, *_KEY_SETTINGS)
             after.relative_key = new.key_blocks[before.relative_key.name]
         if (animation := old.animation_data) is not None:
             copy = new.animation_data_create()
-            _copy_settings(animation, copy)
+            # Blender before 4.4 has no slots.
+            _copy(animation, copy, "action", *(["action_slot"] if animation.action and hasattr(animation, "action_slot") else []))
             for driver in animation.drivers:
                 copy.drivers.from_existing(src_driver=driver)
 
 
-def _copy_settings(before: bpy.types.bpy_struct, after: bpy.types.bpy_struct) -> None:
-    """All settings that can be set, but for those that point into the old data."""
-    for setting in before.bl_rna.properties:
-        if not setting.is_readonly and setting.identifier not in ("relative_key", "name"):
-            setattr(after, setting.identifier, getattr(before, setting.identifier))
+def _copy(before: bpy.types.bpy_struct, after: bpy.types.bpy_struct, *settings: str) -> None:
+    for setting in settings:
+        setattr(after, setting, getattr(before, setting))
 
 
 def _attributes(mesh: bpy.types.Mesh) -> tuple[list[Attribute], list[str]]:

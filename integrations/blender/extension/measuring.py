@@ -15,7 +15,7 @@ from .smoothing import check, refine
 from .waiting import progress
 from .words import counted, length
 
-_MOST = 2_000_000
+_MOST = 1_000_000
 """Triangles beyond which a proof would take minutes."""
 
 
@@ -93,7 +93,7 @@ def _subdivided(context: bpy.types.Context, an_object: bpy.types.Object) -> tupl
     evaluated = an_object.evaluated_get(context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()
     try:
-        if 2 * len(mesh.loops) > 4 * _MOST:
+        if len(mesh.loops) > 2 * _MOST:
             raise limitmesh.MeshError(f"the modifier makes {len(mesh.polygons):,} faces: lower its viewport level")
         triangles = read(mesh.loop_triangles, "vertices", 3, np.int32).astype(np.int64)
         return read(mesh.vertices, "co", 3).astype(np.float64), triangles, len(mesh.polygons)

@@ -13,7 +13,7 @@ from .control import Control, Floats, control_of, scale_of, subdivision_of
 from .luggage import Luggage
 from .waiting import progress
 from .words import counted, length
-from .written import write
+from .written import SIDES, sides_of, write
 
 _SIZE = 0.001
 """The tolerance of who names none, as a part of the diagonal of the bounding box: limitmesh's own."""
@@ -75,7 +75,8 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     options.tolerance = options.tolerance or _SIZE * control.diagonal
     luggage = Luggage(an_object, modifier)
     with progress(context) as told:
-        refined = refine(control, options.tolerance, options.most, options.scheme, channels=luggage.channels(an_object.data), progress=told)
+        channels = {**luggage.channels(an_object.data), SIDES: sides_of(control)}
+        refined = refine(control, options.tolerance, options.most, options.scheme, channels=channels, progress=told)
     users = an_object.data.users
     moved = write(an_object, control, refined, luggage, scale)
     within = np.nextafter(refined.error.upper + moved, np.inf)
@@ -87,8 +88,8 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     text = f"Within {length(context, within)} of the limit surface, {proven}; {faces}"
     is_met = within <= options.tolerance
     if not is_met:
-        why = "single precision ends there" if refined.met else f"stopped at {options.most:,} triangles ({refined.stop})"
-        text = f"{length(context, options.tolerance)} not reached: {why}. {text}"
+        why = {"triangle-cap": f"it takes more than {options.most:,} triangles", "memory-cap": "memory ends before"}
+        text = f"{length(context, options.tolerance)} not reached, since {why.get(refined.stop, 'single precision ends before')}. {text}"
     return {"INFO"} if is_met and not notes else {"WARNING"}, "; ".join([text, *notes])
 
 
@@ -125,7 +126,8 @@ def refine(control: Control, tolerance: float, most: int, scheme: str, **options
 
 def _notes(control: Control, refined: limitmesh.Refined, luggage: Luggage) -> list[str]:
     """What a user should know of the mesh."""
-    notes = [line for line in refined.diagnosis.repairs if "in no face" not in line]
+    # Loose vertices come back, and faces keep their sides.
+    notes = [line for line in refined.diagnosis.repairs if not any(words in line for words in ("in no face", "turned round"))]
     loose = [
         counted(len(rows), *words)
         for rows, words in (

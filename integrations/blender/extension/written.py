@@ -54,12 +54,27 @@ def write(an_object: bpy.types.Object, control: Control, refined: limitmesh.Refi
     return float(moved)
 
 
+SIDES = "sides"
+"""The channel by which faces keep the side that they had, whichever way limitmesh turned them to agree with each other."""
+
+
+def sides_of(control: Control) -> limitmesh.Channel:
+    """Every face as a regular polygon that runs counter-clockwise."""
+    turns = np.concatenate([np.arange(len(face)) * (2.0 * np.pi / len(face)) for face in control.faces])
+    return limitmesh.Channel(np.column_stack([np.cos(turns), np.sin(turns)]), domain="corner", interpolation="linear")
+
+
 def _faces(refined: limitmesh.Refined) -> tuple[Integers, Integers]:
     """Rows of the triangles' corners, face by face, and where each face starts: quads, and then triangles in none of them."""
     quads = refined.quad_corners
     is_single = np.ones(len(refined.faces), dtype=bool)
     is_single[quads // 3] = False
     singles = 3 * np.flatnonzero(is_single)[:, None] + np.arange(3)
+    on_polygon = refined.at_corners(SIDES).reshape(-1, 2)
+    for corners in (quads, singles):
+        a, b, c = (on_polygon[corners[:, at]].T for at in range(3))
+        is_turned = (b - a)[0] * (c - a)[1] < (b - a)[1] * (c - a)[0]
+        corners[is_turned] = corners[is_turned, ::-1]
     starts = np.concatenate([4 * np.arange(len(quads)), 4 * len(quads) + 3 * np.arange(len(singles))])
     return np.concatenate([quads.reshape(-1), singles.reshape(-1)]), starts
 

@@ -11,6 +11,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 
 import pytest
 
@@ -59,3 +60,10 @@ def scene(extension: str) -> None:
         bpy.data.objects.remove(an_object)
     settings = bpy.context.scene.unit_settings
     settings.system, settings.scale_length = "METRIC", 1.0
+
+
+@pytest.fixture
+def said(capfd: pytest.CaptureFixture[str]) -> Callable[[], str]:
+    """What operators reported since it was asked last."""
+    capfd.readouterr()
+    return lambda: capfd.readouterr().out

@@ -13,6 +13,21 @@ CUBE = (
     [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)],
 )
 
+# A house: two faces have five sides.
+HOUSE = (
+    [(x, y, z) for z in (0, 2) for x, y in ((0, 0), (2, 0), (2, 2), (1, 3), (0, 2))],
+    [(4, 3, 2, 1, 0), (5, 6, 7, 8, 9), (0, 1, 6, 5), (1, 2, 7, 6), (2, 3, 8, 7), (3, 4, 9, 8), (4, 0, 5, 9)],
+)
+# A sheet with open edges, bent.
+SHEET = (
+    [(x, y, 0.3 * x * y - 0.2 * x * x) for y in range(4) for x in range(4)],
+    [(x + 4 * y, x + 1 + 4 * y, x + 5 + 4 * y, x + 4 + 4 * y) for y in range(3) for x in range(3)],
+)
+OCTAHEDRON = (
+    [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)],
+    [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)],
+)
+
 
 def add(vertices, faces, edges=(), name="object"):
     """A mesh object, active and alone selected."""
@@ -85,13 +100,10 @@ def subdivided(an_object, levels=5, **settings):
     return mesh
 
 
-def check_surface(result, mesh, tolerance, scale=np.eye(3), on=None):
-    """A result is within the tolerance of Blender's surface, either way, and its vertices are on it."""
-    witness = Shape.of(mesh, scale)
-    # The witness is made of flat faces, too: its middles are this far inside.
-    coarse = on or 0.05 * tolerance
-    assert witness.distances(result.vertices[np.unique(result.triangles)]).max() <= coarse
-    assert witness.distances(result.samples()).max() <= tolerance + coarse
+def check_surface(result, witness, tolerance, off=1e-6):
+    """A result is within the tolerance of Blender's surface, either way, and no vertex is farther off it than this."""
+    assert witness.distances(result.vertices[np.unique(result.triangles)]).max() <= off
+    assert witness.distances(result.samples()).max() <= tolerance
     assert result.distances(witness.vertices).max() <= tolerance
 
 
