@@ -19,15 +19,27 @@ _BOUNDARIES = {"ALL": "smooth", "PRESERVE_CORNERS": "corners"}
 class Control:
     """A control mesh.
 
-    `vertices` are in the scene's unit: they have the object's scale, so that distances are those that a user sees. `loose_edges` and
-    `loose_vertices` are rows of the mesh's edges and vertices in no face.
+    `vertices` are in the scene's unit: they have the object's scale, so that distances are those that a user sees. `corner_vertices` and
+    `corner_edges` are rows of the mesh's vertices and edges by corner of the faces, which begin at `starts`. `loose_edges` and
+    `loose_vertices` are rows of those in no face.
     """
 
     vertices: Floats
-    faces: Any
+    corner_vertices: Integers
+    corner_edges: Integers
+    starts: Integers
     options: dict[str, Any]
     loose_edges: Integers
     loose_vertices: Integers
+
+    @property
+    def faces(self) -> list[Integers]:
+        return np.split(self.corner_vertices, self.starts[1:]) if len(self.starts) else []
+
+    @property
+    def sides(self) -> Integers:
+        """How many each face has."""
+        return np.diff(self.starts, append=len(self.corner_vertices))
 
     @property
     def diagonal(self) -> float:
@@ -44,8 +56,7 @@ def read(items: Any, name: str, width: int = 1, dtype: npt.DTypeLike = np.float3
 
 def control_of(mesh: bpy.types.Mesh, scale: Floats, modifier: bpy.types.Modifier | None) -> Control:
     """The control mesh that Blender's modifier would subdivide; `scale` is the linear part of the object's transform."""
-    corners = read(mesh.loops, "vertex_index", dtype=np.int32)
-    starts = read(mesh.polygons, "loop_start", dtype=np.int32)
+    corners = read(mesh.loops, "vertex_index", dtype=np.int32).astype(np.int64)
     edges = read(mesh.edges, "vertices", 2, np.int32).astype(np.int64)
     is_loose = read(mesh.edges, "is_loose", dtype=bool)
     creases, sharp = _tags(mesh, edges, is_loose, corners) if modifier is None or modifier.use_creases else ([], {})
@@ -62,14 +73,16 @@ def control_of(mesh: bpy.types.Mesh, scale: Floats, modifier: bpy.types.Modifier
     }
     return Control(
         read(mesh.vertices, "co", 3).astype(np.float64) @ scale.T,
-        np.split(corners.astype(np.int64), starts[1:]) if len(starts) else [],
+        corners,
+        read(mesh.loops, "edge_index", dtype=np.int32).astype(np.int64),
+        read(mesh.polygons, "loop_start", dtype=np.int32).astype(np.int64),
         options,
         np.flatnonzero(is_loose),
         np.setdiff1d(np.arange(len(mesh.vertices)), corners),
     )
 
 
-def _tags(mesh: bpy.types.Mesh, edges: Integers, is_loose: npt.NDArray[np.bool_], corners: npt.NDArray[Any]) -> tuple[Any, dict[int, float]]:
+def _tags(mesh: bpy.types.Mesh, edges: Integers, is_loose: npt.NDArray[np.bool_], corners: Integers) -> tuple[Any, dict[int, float]]:
     """Sharp edges of faces and sharp vertices of faces, with their sharpness in levels."""
     creases: list[tuple[int, int, float]] = []
     if (attribute := mesh.attributes.get("crease_edge")) is not None:

@@ -13,7 +13,7 @@ from .control import Control, Floats, control_of, scale_of, subdivision_of
 from .luggage import Luggage
 from .waiting import progress
 from .words import counted, length
-from .written import SIDES, sides_of, write
+from .written import PLACES, places_of, write
 
 _SIZE = 0.001
 """The tolerance of who names none, as a part of the diagonal of the bounding box: limitmesh's own."""
@@ -75,7 +75,7 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     options.tolerance = options.tolerance or _SIZE * control.diagonal
     luggage = Luggage(an_object, modifier)
     with progress(context) as told:
-        channels = {**luggage.channels(an_object.data), SIDES: sides_of(control)}
+        channels = {**luggage.channels(an_object.data), PLACES: places_of(control)}
         refined = refine(control, options.tolerance, options.most, options.scheme, channels=channels, progress=told)
     users = an_object.data.users
     moved = write(an_object, control, refined, luggage, scale)
@@ -107,8 +107,7 @@ def check(an_object: bpy.types.Object, scale: Floats) -> None:
 def refine(control: Control, tolerance: float, most: int, scheme: str, **options: Any) -> limitmesh.Refined:
     """Refines to a tolerance that holds after rounding to 32 bits, with quads where the scheme has some."""
     rounding = np.sqrt(3.0) * np.abs(control.vertices).max() * 2.0**-23
-    quads = sum(len(face) == 4 for face in control.faces)
-    is_of_quads = 2 * quads > len(control.faces) if scheme == "AUTO" else scheme == "CATMULL_CLARK"
+    is_of_quads = 2 * (control.sides == 4).sum() > len(control.sides) if scheme == "AUTO" else scheme == "CATMULL_CLARK"
     with warnings.catch_warnings():
         # The caller reports what falls short.
         warnings.simplefilter("ignore", limitmesh.StoppedShort)
@@ -119,6 +118,7 @@ def refine(control: Control, tolerance: float, most: int, scheme: str, **options
             max_triangles=most,
             scheme="catmull-clark" if is_of_quads else "loop",
             quads=is_of_quads,
+            origins=False,
             **control.options,
             **options,
         )
@@ -138,6 +138,8 @@ def _notes(control: Control, refined: limitmesh.Refined, luggage: Luggage) -> li
     ]
     if loose:
         notes.append(f"{' and '.join(loose)} in no face kept as they are")
+    if luggage.keys:
+        notes.append(f"shape keys carried, but the distance is that of {luggage.keys[0][0]}")
     if luggage.left:
         notes.append(f"attributes not carried: {', '.join(luggage.left)}")
     return notes

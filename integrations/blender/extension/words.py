@@ -11,7 +11,7 @@ def length(context: bpy.types.Context, value: float) -> str:
     while True:
         text: str = bpy.utils.units.to_string(settings.system, "LENGTH", shown, precision=4)
         if bpy.utils.units.to_value(settings.system, "LENGTH", text) >= metres:
-            return text
+            return text.strip()
         shown *= 1.0001
 
 

@@ -18,7 +18,7 @@ def test_texture_coordinates(shape, mode):
     places = read(mesh.vertices, "co", 3)[read(mesh.loops, "vertex_index", 1, np.int32)]
     # One with seams everywhere, one projected through the mesh, one with a seam between two halves.
     slanted = places[:, :2] * np.float32(0.2) + places[:, 2:] * np.float32((0.05, 0.11))
-    halves = slanted + (of_corners(mesh, np.arange(len(mesh.polygons)) % 2) * 5)[:, None]
+    halves = slanted + (of_corners(mesh, np.arange(len(mesh.polygons)) < 3) * 5)[:, None]
     maps = {"torn": np.random.default_rng(1).random(slanted.shape), "slanted": slanted, "halves": halves}
     for name, uv in maps.items():
         mesh.uv_layers.new(name=name).uv.foreach_set("vector", uv.astype(np.float32).reshape(-1))
@@ -113,7 +113,8 @@ def test_marks_of_edges_lie_along_them():
             places.append(ends.reshape(-1, 3))
         assert lengths[0] == pytest.approx(lengths[1], rel=1e-2)
         nearest = np.linalg.norm(places[0][:, None] - places[1], axis=2).min(axis=1)
-        assert nearest.max() < 1e-5
+        # Where marks end, so do creases, and Blender's limit is an approximation.
+        assert nearest.max() < 1e-4
 
 
 def test_whole_numbers_are_not_blended():
@@ -144,7 +145,7 @@ def test_shape_keys_lead_to_the_surfaces_of_their_cages(said):
         up.data[row].co.z -= 1
         wide.data[row].co.x *= 2
     up.slider_max, up.value, wide.relative_key, wide.mute = 2.0, 1.5, up, True
-    up.driver_add("value").driver.expression = "1.25"
+    up.driver_add("value").driver.expression = "1.5"
     wide.keyframe_insert("value", frame=3)
     action = mesh.shape_keys.animation_data.action
     cages = {name: read(mesh.shape_keys.key_blocks[name].data, "co", 3).tolist() for name in ("up", "wide")}

@@ -7,7 +7,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="the module bpy is not installed: pip install bpy")
 
-from scenes import CUBE, HOUSE, SHEET, Shape, add, smooth, subdivided  # noqa: E402
+from scenes import CUBE, HOUSE, SHEET, Shape, activate, add, smooth, subdivided  # noqa: E402
 
 measuring = bpy.ops.object.limitmesh_measure
 
@@ -39,6 +39,7 @@ def test_levels(said, shape, on_limit):
     modifier = an_object.modifiers.new("Subdivision", "SUBSURF")
     modifier.use_limit_surface = on_limit
     for levels in (1, 2, 3):
+        activate(an_object)
         modifier.levels = levels
         told, level, faces, needed = measured(said)
         coarse = subdivided(an_object, 0)

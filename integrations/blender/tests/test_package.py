@@ -12,11 +12,10 @@ bpy = pytest.importorskip("bpy", reason="the module bpy is not installed: pip in
 
 
 def test_blender_finds_the_archive_valid(archive):
-    own = pathlib.Path(bpy.utils.script_path_user() or ".")
     tools = [pathlib.Path(folder) / "addons_core/bl_pkg/cli/blender_ext.py" for folder in bpy.utils.script_paths()]
     tool = next(path for path in tools if path.exists())
     done = subprocess.run([sys.executable, tool, "validate", archive], capture_output=True, text=True)
-    assert done.returncode == 0, (done.stdout + done.stderr, own)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_the_manifest_has_the_workspaces_version_and_the_wheel(archive):
@@ -29,10 +28,9 @@ def test_the_manifest_has_the_workspaces_version_and_the_wheel(archive):
     assert {"__init__.py", "LICENSE-MIT", "LICENSE-APACHE"} <= set(names)
 
 
-def test_the_wheel_of_the_extension_is_what_runs(extension):
-    import limitmesh
-
-    assert pathlib.Path(limitmesh.__file__).is_relative_to(pathlib.Path(bpy.utils.user_resource("EXTENSIONS")))
+def test_blender_unpacks_the_wheel(extension):
+    folder = pathlib.Path(bpy.utils.user_resource("EXTENSIONS")) / ".local/lib"
+    assert [path.name for path in folder.glob("python3.*/site-packages/limitmesh")] == ["limitmesh"]
 
 
 def test_it_can_be_switched_off_and_on(extension):
