@@ -95,6 +95,7 @@ def _subdivided(context: bpy.types.Context, an_object: bpy.types.Object) -> tupl
     try:
         if len(mesh.loops) > 2 * _MOST:
             raise limitmesh.MeshError(f"the modifier makes {len(mesh.polygons):,} faces: lower its viewport level")
+        mesh.calc_loop_triangles()
         triangles = read(mesh.loop_triangles, "vertices", 3, np.int32).astype(np.int64)
         return read(mesh.vertices, "co", 3).astype(np.float64), triangles, len(mesh.polygons)
     finally:

@@ -80,9 +80,9 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     users = an_object.data.users
     moved = write(an_object, control, refined, luggage, scale)
     within = np.nextafter(refined.error.upper + moved, np.inf)
-    notes = [*_notes(control, refined, luggage), *_switch_off(an_object)]
+    warned = _warnings(control, refined, luggage)
     if users > 1:
-        notes.append(f"{users} objects share the mesh, and all changed")
+        warned.append(f"{users} objects share the mesh, and all changed")
     proven = "proven" if refined.error.certified else "estimated"
     faces = counted(len(an_object.data.polygons), "face", "faces")
     text = f"Within {length(context, within)} of the limit surface, {proven}; {faces}"
@@ -90,7 +90,7 @@ def smooth(options: SmoothToTolerance, context: bpy.types.Context, an_object: bp
     if not is_met:
         why = {"triangle-cap": f"it takes more than {options.most:,} triangles", "memory-cap": "memory ends before"}
         text = f"{length(context, options.tolerance)} not reached, since {why.get(refined.stop, 'single precision ends before')}. {text}"
-    return {"INFO"} if is_met and not notes else {"WARNING"}, "; ".join([text, *notes])
+    return {"WARNING"} if warned or not is_met else {"INFO"}, "; ".join([text, *warned, *_switch_off(an_object)])
 
 
 def check(an_object: bpy.types.Object, scale: Floats) -> None:
@@ -124,10 +124,10 @@ def refine(control: Control, tolerance: float, most: int, scheme: str, **options
         )
 
 
-def _notes(control: Control, refined: limitmesh.Refined, luggage: Luggage) -> list[str]:
+def _warnings(control: Control, refined: limitmesh.Refined, luggage: Luggage) -> list[str]:
     """What a user should know of the mesh."""
     # Loose vertices come back, and faces keep their sides.
-    notes = [line for line in refined.diagnosis.repairs if not any(words in line for words in ("in no face", "turned round"))]
+    warned = [line for line in refined.diagnosis.repairs if not any(words in line for words in ("in no face", "turned round"))]
     loose = [
         counted(len(rows), *words)
         for rows, words in (
@@ -137,12 +137,12 @@ def _notes(control: Control, refined: limitmesh.Refined, luggage: Luggage) -> li
         if len(rows)
     ]
     if loose:
-        notes.append(f"{' and '.join(loose)} in no face kept as they are")
+        warned.append(f"{' and '.join(loose)} in no face kept as they are")
     if luggage.keys:
-        notes.append(f"shape keys carried, but the distance is that of {luggage.keys[0][0]}")
+        warned.append(f"shape keys carried, but the distance is that of {luggage.keys[0][0]}")
     if luggage.left:
-        notes.append(f"attributes not carried: {', '.join(luggage.left)}")
-    return notes
+        warned.append(f"attributes not carried: {', '.join(luggage.left)}")
+    return warned
 
 
 def _switch_off(an_object: bpy.types.Object) -> list[str]:
