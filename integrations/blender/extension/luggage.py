@@ -194,11 +194,12 @@ def _copy(before: bpy.types.bpy_struct, after: bpy.types.bpy_struct, *settings: 
 
 def _attributes(mesh: bpy.types.Mesh) -> tuple[list[Attribute], list[str]]:
     """Attributes that are carried, and the names of others. Those with a dot are Blender's own notes on what is selected and hidden."""
-    found, left = [], []
+    found: list[Attribute] = []
+    left = ["custom normals"] if mesh.has_custom_normals else []
     for attribute in mesh.attributes:
-        if attribute.name.startswith(".") or attribute.name == "position":
+        if attribute.name.startswith(".") or attribute.name in ("position", "custom_normal"):
             continue
-        if attribute.data_type not in _TYPES or attribute.name == "custom_normal":
+        if attribute.data_type not in _TYPES:
             left.append(attribute.name)
             continue
         name, width, dtype = _TYPES[attribute.data_type]

@@ -141,7 +141,7 @@ def _warnings(control: Control, refined: limitmesh.Refined, luggage: Luggage) ->
     if luggage.keys:
         warned.append(f"shape keys carried, but the distance is that of {luggage.keys[0][0]}")
     if luggage.left:
-        warned.append(f"attributes not carried: {', '.join(luggage.left)}")
+        warned.append(f"not carried: {', '.join(luggage.left)}")
     return warned
 
 

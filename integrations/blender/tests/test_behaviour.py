@@ -1,10 +1,10 @@
 """What a user meets: refusals, reports, undo, caps, shared meshes."""
 
-import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="the module bpy is not installed: pip install bpy")
 
+import numpy as np  # noqa: E402
 from scenes import CUBE, HOUSE, Shape, activate, add, link, read, smooth, subdivided  # noqa: E402
 
 smoothing = bpy.ops.object.limitmesh_smooth
@@ -29,6 +29,16 @@ def test_the_report_has_the_scenes_unit_and_never_rounds_down(said, system, unit
     told = bpy.utils.units.to_value(system, "LENGTH", text.split("Within ")[1].split(" of the")[0]) / (1.0 if system == "NONE" else scale)
     found = max(witness.distances(result.samples()).max(), result.distances(witness.vertices).max())
     assert found <= told <= unit * 1.001
+
+
+@pytest.mark.parametrize("system", ["METRIC", "IMPERIAL", "NONE"])
+def test_flat_meshes_have_no_distance_but_that_of_rounding(said, system):
+    bpy.context.scene.unit_settings.system = system
+    an_object = add([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+    an_object.data.attributes.new("crease_vert", "FLOAT", "POINT").data.foreach_set("value", np.ones(4, dtype=np.float32))
+    smooth(an_object, 0.01)
+    text = said().split("Within ")[1].split(" of the")[0]
+    assert 0.0 < bpy.utils.units.to_value(system, "LENGTH", text) < 1e-4
 
 
 def test_without_a_tolerance_it_is_a_thousandth_of_the_size():

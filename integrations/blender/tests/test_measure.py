@@ -2,11 +2,11 @@
 
 import re
 
-import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="the module bpy is not installed: pip install bpy")
 
+import numpy as np  # noqa: E402
 from scenes import CUBE, HOUSE, SHEET, Shape, activate, add, smooth, subdivided  # noqa: E402
 
 measuring = bpy.ops.object.limitmesh_measure

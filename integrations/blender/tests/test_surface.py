@@ -1,10 +1,10 @@
 """The smooth surface is Blender's own: the one of its Subdivision Surface modifier, with Use Limit Surface."""
 
-import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="the module bpy is not installed: pip install bpy")
 
+import numpy as np  # noqa: E402
 from scenes import CUBE, HOUSE, OCTAHEDRON, SHEET, Shape, add, check_surface, smooth, subdivided  # noqa: E402
 
 
