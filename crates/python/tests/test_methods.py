@@ -196,6 +196,10 @@ def test_quads_of_catmull_clark_are_pairs_of_triangles(tmp_path):
             return {tuple(sorted(edge)) for face in faces.tolist() for edge in zip(face, face[1:] + face[:1], strict=True)}
         assert edges(found.quads) | edges(found.triangles) <= edges(found.faces)
         assert len(edges(found.faces)) - len(edges(found.quads) | edges(found.triangles)) == len(found.quads)
+        # The corners of a quad are corners of its two triangles, and of no other.
+        assert (found.faces.reshape(-1)[found.quad_corners] == found.quads).all()
+        rows = np.sort(found.quad_corners // 3, axis=1)
+        assert (rows[:, 0] < rows[:, 3]).all() and len(np.unique(rows)) == 2 * len(found.quads)
         # The middle of a face of the cube came from the middle of a diagonal.
         assert len(found.vertex_face) == len(found.vertices) and found.barycentric.shape == (len(found.vertices), 3)
         path = tmp_path / "quads.ply"

@@ -114,6 +114,8 @@ class Refined:
         (m, 3) vertex numbers, counter-clockwise seen from outside, of the type ``index_dtype``.
     quads
         (k, 4) vertex numbers of the pairs of triangles that make quads, if ``quads`` was asked for.
+    quad_corners
+        (k, 4) which corners of the triangles these are, numbered over all rows of ``faces``: to look up what corners carry.
     triangles
         (r, 3) vertex numbers of the triangles that are in no quad: with ``quads`` the faces of a file.
     normals
@@ -201,9 +203,13 @@ class Refined:
 
     @property
     def quads(self) -> AnyIntegers:
+        return self.faces.reshape(-1)[self.quad_corners]
+
+    @property
+    def quad_corners(self) -> AnyIntegers:
         corners = self._quads.astype(np.int64)
         around = [_after(corners[:, 1], 1), _after(corners[:, 1], 2), _after(corners[:, 0], 1), _after(corners[:, 0], 2)]
-        return self.faces.reshape(-1)[np.stack(around, axis=1)]
+        return np.stack(around, axis=1)
 
     @property
     def triangles(self) -> AnyIntegers:
