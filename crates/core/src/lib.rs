@@ -68,7 +68,6 @@ pub mod closure;
 pub mod criterion;
 pub mod front;
 pub mod guide;
-mod lanes;
 mod node;
 pub mod part;
 pub mod refine;

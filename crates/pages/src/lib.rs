@@ -120,24 +120,23 @@ fn ask<T>(array: &mut Vec<T>) {
 
 #[cfg(any(target_os = "linux", target_os = "android"))]
 mod system {
-    use rustix::mm::{Advice, madvise};
-    use rustix::param::page_size;
+    /// No processor has larger small pages.
+    const PAGE: usize = 1 << 16;
 
     /// Asks for large pages for `bytes` bytes from `start` on, less what does not fill a small page.
     pub(super) fn ask(start: *mut u8, bytes: usize) {
-        let page = page_size();
-        let before = start.align_offset(page);
-        let whole = bytes.saturating_sub(before) / page * page;
+        let before = start.align_offset(PAGE);
+        let whole = bytes.saturating_sub(before) / PAGE * PAGE;
         // An answer that there are none changes nothing.
         #[expect(
             unsafe_code,
             reason = "advice on how pages of the vector are mapped, which changes nothing of what they hold"
         )]
         let _ = unsafe {
-            madvise(
+            libc::madvise(
                 start.wrapping_add(before).cast(),
                 whole,
-                Advice::LinuxHugepage,
+                libc::MADV_HUGEPAGE,
             )
         };
     }

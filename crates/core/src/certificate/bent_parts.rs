@@ -16,9 +16,9 @@ mod moved;
 use core::array::from_fn;
 
 use super::quartic_cell::{CUBIC, CURVE_CUBIC, QUARTIC, QUARTIC_SLOPE, QuarticJet};
-use crate::lanes::F64x4;
 use crate::vector::DVec3;
 pub(crate) use moved::MovedFour;
+use wide::f64x4;
 
 /// Parts that are taken together.
 pub(crate) const FOUR: usize = 4;
@@ -33,10 +33,10 @@ const A_LITTLE_MORE: f64 = 1.0 + 1e-6;
 const TOO_GREAT: f64 = 1e30;
 
 /// A vector for each of four parts.
-type Vectors = [F64x4; 3];
+type Vectors = [f64x4; 3];
 
 /// Places in the domain of a piece.
-pub(crate) type Places = [F64x4; 2];
+pub(crate) type Places = [f64x4; 2];
 
 /// A regular piece, prepared for parts of it.
 pub(crate) struct Bender<'a> {
@@ -58,12 +58,12 @@ pub(crate) struct Bent {
 /// The bounds of the share of third and fourth derivatives of four parts.
 struct Rest {
     /// How far heights over any plane may be off those of the quadratic part.
-    height: F64x4,
+    height: f64x4,
     /// How far curves may be off their edges, and their slopes towards the ends times the edges' lengths.
-    curve: F64x4,
-    steep: F64x4,
+    curve: f64x4,
+    steep: f64x4,
     /// The greatest error of first derivatives along edges.
-    first: F64x4,
+    first: f64x4,
 }
 
 /// The data kept of four parts. Bends are those along the edges in their middles, by edge, axis and
@@ -104,7 +104,7 @@ impl<'a> Bender<'a> {
 
     /// Parts with edges along the axes of the domain, given by their first corners, with sizes that are negative for inverted ones.
     #[inline]
-    pub(crate) fn even(&self, [u, v]: Places, size: F64x4) -> Bent {
+    pub(crate) fn even(&self, [u, v]: Places, size: f64x4) -> Bent {
         let ([uu, _, vv], half, third) = (self.jet.second(), 0.5 * size, size * (1.0 / 3.0));
         let (square, reach) = (size * size, size.abs());
         let bend = |c: &[DVec3; 6], at: Places| quadratic(c, at).map(|bend| bend * square);
@@ -125,14 +125,14 @@ impl<'a> Bender<'a> {
     #[inline]
     pub(crate) fn any(&self, [a, b, c]: [Places; 3]) -> Bent {
         let [uu, uv, vv] = self.jet.second();
-        let mut reach = F64x4::ZERO;
+        let mut reach = f64x4::ZERO;
         let mut bend = |from: Places, to: Places| {
             let [du, dv] = [to[0] - from[0], to[1] - from[1]];
             reach = reach.fast_max(du.abs()).fast_max(dv.abs());
             let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
             let by = [uu, uv, vv].map(|c| quadratic(c, middle));
             let shares = [du * du, 2.0 * du * dv, dv * dv];
-            from_fn(|axis| (0..3).fold(F64x4::ZERO, |sum, i| sum + by[i][axis] * shares[i]))
+            from_fn(|axis| (0..3).fold(f64x4::ZERO, |sum, i| sum + by[i][axis] * shares[i]))
         };
         let bends = [bend(a, b), bend(b, c), bend(c, a)];
         let square = reach * reach;
@@ -140,7 +140,7 @@ impl<'a> Bender<'a> {
         let centroid = from_fn(|axis| (a[axis] + b[axis] + c[axis]) * (1.0 / 3.0));
         let [s, r] = [b, c].map(|to| [to[0] - a[0], to[1] - a[1]]);
         let form = self.third(centroid);
-        let mut along = [[F64x4::ZERO; 3]; 4];
+        let mut along = [[f64x4::ZERO; 3]; 4];
         for axis in 0..3 {
             let form = form.map(|c| c[axis]);
             let (twice_s, twice_r) = (along_twice(form, s), along_twice(form, r));
@@ -180,7 +180,7 @@ impl Rest {
     /// Let s and r be edges from one corner, t = r − s, and F that bound. In the middle of s, a sixth of s − 2r from the centroid,
     /// the third derivative is off by ssss/6 − sssr/3; and sssr = ½(ssss + ssrr − sstt), so by no more than ⅔ F.
     #[inline]
-    fn of([third, bubble]: [F64x4; 2], fourth: F64x4) -> Self {
+    fn of([third, bubble]: [f64x4; 2], fourth: f64x4) -> Self {
         let in_middle = third + fourth * (2.0 / 3.0);
         Self {
             height: CUBIC * third + bubble * (1.0 / 27.0) + QUARTIC * fourth,
@@ -195,9 +195,9 @@ impl Bent {
     /// The least and the greatest height of the quadratic parts over the planes of the corners, given their unit normals, and how far
     /// off heights may be from them at most.
     #[inline]
-    pub(crate) fn heights(&self, normals: &Vectors) -> (F64x4, F64x4, F64x4) {
+    pub(crate) fn heights(&self, normals: &Vectors) -> (f64x4, f64x4, f64x4) {
         let bends = self.bends.map(|bend| dot(&bend, normals));
-        let (low, high) = moved::quadratic_range(bends, [F64x4::ZERO; 3]);
+        let (low, high) = moved::quadratic_range(bends, [f64x4::ZERO; 3]);
         (low, high, self.rest.height)
     }
 
@@ -205,7 +205,7 @@ impl Bent {
     #[inline]
     pub(crate) fn kept(&self, scale: f64) -> BentFour {
         let bends = self.bends.map(|bend| bend.map(|axis| axis * scale));
-        let size = bends.iter().fold(F64x4::ZERO, |size, [x, y, z]| {
+        let size = bends.iter().fold(f64x4::ZERO, |size, [x, y, z]| {
             size.fast_max(x.abs() + y.abs() + z.abs())
         });
         let Rest {
@@ -217,17 +217,17 @@ impl Bent {
         let [height, curve, steep, first] =
             [height, curve, steep, first].map(|&bound| bound * scale);
         let off = ROUNDED * size;
-        let above = |bound: F64x4| (bound + off) * A_LITTLE_MORE;
-        let single = |numbers: F64x4| numbers.to_array().map(|number| number as f32);
+        let above = |bound: f64x4| (bound + off) * A_LITTLE_MORE;
+        let single = |numbers: f64x4| numbers.to_array().map(|number| number as f32);
         // NaN is not below it.
         let sum = bends
             .iter()
             .flatten()
             .fold(height + first, |sum, axis| sum + axis.abs());
-        let is_known = (sum + curve + steep).simd_lt(F64x4::splat(TOO_GREAT));
+        let is_known = (sum + curve + steep).simd_lt(f64x4::splat(TOO_GREAT));
         BentFour {
             bends: bends.map(|bend| bend.map(single)),
-            rest: single(is_known.select(above(height), F64x4::splat(f64::INFINITY))),
+            rest: single(is_known.bitselect(above(height), f64x4::splat(f64::INFINITY))),
             curve: single(above(curve)),
             steep: single(above(steep)),
             first: single(above(first)),
@@ -262,7 +262,7 @@ impl BentFour {
 /// The lengths of the greatest third derivative along an edge and of the bubble's coefficient, for the third derivatives at the
 /// centroid, given along the edges from the first corner, s and r: sss, ssr, srr, rrr. See [`super::quartic_cell`].
 #[inline]
-fn thirds([a, b, c, d]: &[Vectors; 4]) -> [F64x4; 2] {
+fn thirds([a, b, c, d]: &[Vectors; 4]) -> [f64x4; 2] {
     let across: Vectors = from_fn(|axis| d[axis] - a[axis] + 3.0 * (b[axis] - c[axis]));
     let bubble: Vectors =
         from_fn(|axis| 0.25 * a[axis] - 0.5 * b[axis] + (across[axis] + d[axis]) * (1.0 / 12.0));
@@ -274,13 +274,13 @@ fn thirds([a, b, c, d]: &[Vectors; 4]) -> [F64x4; 2] {
 
 /// A form of third degree with one direction put in twice.
 #[inline]
-fn along_twice([a, b, c, d]: [F64x4; 4], [u, v]: Places) -> [F64x4; 2] {
+fn along_twice([a, b, c, d]: [f64x4; 4], [u, v]: Places) -> [f64x4; 2] {
     let [p, q, r] = [a * u + b * v, b * u + c * v, c * u + d * v];
     [p * u + q * v, q * u + r * v]
 }
 
 #[inline]
-fn inner([a, b]: [F64x4; 2], [u, v]: Places) -> F64x4 {
+fn inner([a, b]: [f64x4; 2], [u, v]: Places) -> f64x4 {
     a * u + b * v
 }
 
@@ -294,7 +294,7 @@ fn quadratic(c: &[DVec3; 6], [u, v]: Places) -> Vectors {
 }
 
 #[inline]
-fn dot(a: &Vectors, b: &Vectors) -> F64x4 {
+fn dot(a: &Vectors, b: &Vectors) -> f64x4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

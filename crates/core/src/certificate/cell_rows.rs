@@ -17,12 +17,12 @@ use super::quartic_cell::{
     CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, edge_range, quadratic,
     quadratic_height,
 };
-use crate::lanes::F32x4;
 use crate::patch::{Quartic, reciprocal_power};
 use crate::vector::DVec3;
 use crate::vector::Extremes;
 use few_parts::{FEW, FEW_DIVISIONS, FewParts};
 use part_bounds::{Found, LANES, Parts, Remainder, Slices, above, measure};
+use wide::f32x4;
 
 /// Divisions at most.
 pub(crate) const MOST_DIVISIONS: u32 = 6;
@@ -500,12 +500,12 @@ impl Bends {
         for axis in 0..3 {
             let (a, b, c) = (by_two[axis] as f32, by_one[axis] as f32, from[axis] as f32);
             self.size += a.abs() + b.abs() + c.abs();
-            let mut number = F32x4::from([0.0, 1.0, 2.0, 3.0]);
+            let mut number = f32x4::from([0.0, 1.0, 2.0, 3.0]);
             let fours = self.along[axis].as_chunks_mut::<LANES>().0.iter_mut();
             for four in fours.take(count.div_ceil(LANES)) {
                 let t = number * share;
                 *four = ((a * t + b) * t + c).to_array();
-                number += F32x4::splat(LANES as f32);
+                number += LANES as f32;
             }
         }
     }

@@ -11,9 +11,9 @@ use super::borders::{Borders, Corner, INSIDE, corner, inner_points};
 use super::deviation::Deviation;
 use super::exceeds;
 use super::trilinear::{Trilinear, TrilinearFrame};
-use crate::lanes::F64x4;
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::{Extremes, hypotenuse};
+use wide::f64x4;
 
 /// Points of curves that are taken together.
 const TOGETHER: usize = 4;
@@ -22,7 +22,7 @@ const TOGETHER: usize = 4;
 struct Greatest<'a> {
     frame: &'a TrilinearFrame,
     /// The greatest size of a height, and the greatest distances outside the lines of the edges.
-    most: F64x4,
+    most: f64x4,
     /// Squared distance from the triangle, or for points of curves from the edge; that by heights alone left out.
     squared: f64,
     /// The part of that distance within the plane.
@@ -37,11 +37,13 @@ struct Greatest<'a> {
     beyond: bool,
 }
 
+/// All bits of trilinear coordinates, and those of a height but its sign.
+const UNSIGNED_HEIGHT: [u64; 4] = [u64::MAX >> 1, u64::MAX, u64::MAX, u64::MAX];
+
 /// The point with the absolute height.
 #[inline(always)]
-fn with_size(Trilinear(point): Trilinear) -> F64x4 {
-    let [height, a, b, c] = point.to_array();
-    F64x4::new([height.abs(), a, b, c])
+fn with_size(Trilinear(point): Trilinear) -> f64x4 {
+    point & f64x4::new(UNSIGNED_HEIGHT.map(f64::from_bits))
 }
 
 /// The bound of a net, `None` if its points have to be tested one by one, and a height that the
@@ -97,7 +99,7 @@ pub(super) fn of_points(
     curves: &[(usize, Trilinear)],
 ) -> Option<Deviation> {
     let all = inner.iter().chain(curves.iter().map(|(_, point)| point));
-    let sum = all.fold(F64x4::ZERO, |sum, point| sum + point.0);
+    let sum = all.fold(f64x4::ZERO, |sum, point| sum + point.0);
     if !sum.to_array().iter().all(|sum| sum.is_finite()) {
         return None;
     }
@@ -124,14 +126,14 @@ pub(super) fn of_points(
 /// The greatest height in the middle of a piece and of its edges, and whether all points are finite.
 #[inline]
 fn attained(net: &BezierTriangle<Trilinear>) -> (f64, bool) {
-    let (mut on_edges, mut middle) = (F64x4::ZERO, F64x4::ZERO);
+    let (mut on_edges, mut middle) = (f64x4::ZERO, f64x4::ZERO);
     for edge in EDGES {
         let [a, b, c, d, e] = edge.map(|at| net.0[at].0);
         let most = (b + d) * 4.0 + c * 6.0;
         on_edges = on_edges.fast_max((a + e + most).abs());
         middle += a + most;
     }
-    middle += INNER.iter().fold(F64x4::ZERO, |sum, &at| sum + net.0[at].0) * 12.0;
+    middle += INNER.iter().fold(f64x4::ZERO, |sum, &at| sum + net.0[at].0) * 12.0;
     let (on_edges, middle) = (on_edges.to_array(), middle.to_array());
     // Weights are positive: a number that is none, or infinite, is left in the sum.
     let is_finite = middle.iter().all(|sum| sum.is_finite());
@@ -145,7 +147,7 @@ impl<'a> Greatest<'a> {
     fn over(frame: &'a TrilinearFrame) -> Self {
         Self {
             frame,
-            most: F64x4::ZERO,
+            most: f64x4::ZERO,
             squared: 0.0,
             side: 0.0,
             edge_heights: [0.0; 3],
@@ -177,7 +179,7 @@ impl<'a> Greatest<'a> {
         let on_edge = self.frame.on_edge;
         if !point
             .0
-            .simd_gt(F64x4::new([f64::INFINITY, on_edge, on_edge, on_edge]))
+            .simd_gt(f64x4::new([f64::INFINITY, on_edge, on_edge, on_edge]))
             .any()
         {
             return;
@@ -204,25 +206,24 @@ impl<'a> Greatest<'a> {
     /// Points of the curve over an edge, some perhaps more than once.
     #[inline]
     fn curve(&mut self, edge: usize, points: [&Trilinear; TOGETHER]) {
-        let row = |at: usize| F64x4::new(points.map(|point| point.0.to_array()[at % 4]));
+        let row = |at: usize| f64x4::new(points.map(|point| point.0.as_array()[at % 4]));
         let (heights, out, before) = (row(0), row(1 + edge), row(1 + (edge + 2) % 3));
         let [by_before, by_own] = self.frame.shares_along(edge);
         let along = before * by_before + out * by_own;
-        let room = along.fast_min(F64x4::splat(self.frame.lengths[edge]) - along);
-        let on_edge = F64x4::splat(self.frame.on_edge);
+        let room = along.fast_min(f64x4::splat(self.frame.lengths[edge]) - along);
+        let on_edge = f64x4::splat(self.frame.on_edge);
         let side = out.abs();
         let is_off = side.simd_gt(on_edge);
-        let swings = is_off.select(side / room, F64x4::ZERO);
+        let swings = is_off & (side / room);
         let outside = out.simd_gt(on_edge);
         self.squared = self.squared.larger(greatest(heights * heights + out * out));
         self.side = self.side.larger(greatest(side));
         self.swings[edge] = self.swings[edge].larger(greatest(swings));
-        self.slopes[edge] = self.slopes[edge].larger(greatest(outside.select(swings, F64x4::ZERO)));
-        self.displacements[edge] =
-            self.displacements[edge].larger(greatest(outside.select(out, F64x4::ZERO)));
+        self.slopes[edge] = self.slopes[edge].larger(greatest(outside & swings));
+        self.displacements[edge] = self.displacements[edge].larger(greatest(outside & out));
         self.edge_heights[edge] = self.edge_heights[edge].larger(greatest(heights.abs()));
-        let rooms = is_off.select(room, room + on_edge);
-        self.beyond |= rooms.simd_lt(F64x4::ZERO).any();
+        let rooms = is_off.bitselect(room, room + on_edge);
+        self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
 
     /// The deviation; `None` if the points have to be tested one by one.
@@ -261,7 +262,7 @@ impl<'a> Greatest<'a> {
 
 /// The greatest of four numbers, or 0.
 #[inline(always)]
-fn greatest(numbers: F64x4) -> f64 {
+fn greatest(numbers: f64x4) -> f64 {
     let [a, b, c, d] = numbers.to_array();
     a.larger(b).larger(c.larger(d)).larger(0.0)
 }

@@ -16,9 +16,9 @@
 
 use super::exceeds;
 use super::triangle_frame::{EdgePosition, SLIVER, TriangleFrame};
-use crate::lanes::F64x4;
 use crate::vector::{Blend, DVec3};
 use core::ops::{Add, Div, Mul, Sub, SubAssign};
+use wide::f64x4;
 
 /// The squares of trilinear coordinates count at most this many times in a squared length:
 /// cancellation leaves less than [`TriangleFrame::ROUNDING`].
@@ -26,7 +26,7 @@ const MOST_LOST: f64 = 128.0;
 
 /// A point's height and trilinear coordinates, or the differences of two points'.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Trilinear(pub(super) F64x4);
+pub(super) struct Trilinear(pub(super) f64x4);
 
 /// A triangle without too small angles, prepared for points that are seen from it.
 #[derive(Clone, Copy, Debug)]
@@ -38,10 +38,10 @@ pub(super) struct TrilinearFrame {
     pub(super) on_edge: f64,
     pub(super) slopes: [f64; 3],
     /// The weights of a point's coordinates, by axis, and the constant that is subtracted.
-    axes: [F64x4; 3],
-    offsets: F64x4,
+    axes: [f64x4; 3],
+    offsets: f64x4,
     /// Of the squares in a squared length.
-    squares: F64x4,
+    squares: f64x4,
     /// By edge, the weights of the trilinear coordinates of the edge before and of its own in the
     /// position along it.
     along: [[f64; 2]; 3],
@@ -63,7 +63,7 @@ impl TrilinearFrame {
         let cosines = [0, 1, 2].map(|corner| -along[(corner + 2) % 3].dot(along[corner]));
         let lanes = |of: fn(DVec3) -> f64| {
             let [a, b, c] = outward.map(of);
-            F64x4::new([of(up), a, b, c])
+            f64x4::new([of(up), a, b, c])
         };
         let [a, b, c] = [0, 1, 2].map(|edge| triangle.offset(edge));
         let weights =
@@ -78,8 +78,8 @@ impl TrilinearFrame {
             on_edge: triangle.on_edge(),
             slopes: [0, 1, 2].map(|edge| triangle.slope_at(edge)),
             axes: [lanes(|v| v.x), lanes(|v| v.y), lanes(|v| v.z)],
-            offsets: F64x4::new([0.0, a, b, c]),
-            squares: F64x4::new([1.0, u, v, w]),
+            offsets: f64x4::new([0.0, a, b, c]),
+            squares: f64x4::new([1.0, u, v, w]),
             along: [0, 1, 2].map(|edge| {
                 let share = -1.0 / sines[edge];
                 [share, share * cosines[edge]]
@@ -98,7 +98,7 @@ impl TrilinearFrame {
     /// The squared length of a difference.
     #[inline]
     pub(super) fn length_squared(&self, Trilinear(difference): Trilinear) -> f64 {
-        (difference * difference * self.squares).sum()
+        (difference * difference * self.squares).reduce_add()
     }
 
     /// The weights of the distances from the lines of the edge before and of an edge itself in the

@@ -11,7 +11,7 @@ use super::super::deviation::SHARPEST;
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
 use super::super::triangle_frame::SLIVER;
 use super::{BentFour, FOUR, Vectors, cross, dot, minus};
-use crate::lanes::{F64x4, Mask};
+use wide::f64x4;
 
 /// Four triangles that have neighbours beyond all edges. By corner, axis and triangle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,34 +40,34 @@ pub(crate) struct FoundFour {
 struct Triangle {
     /// From each corner to the next.
     edges: [Vectors; 3],
-    lengths: [F64x4; 3],
+    lengths: [f64x4; 3],
     /// The products of the edges from each corner.
-    products: [F64x4; 3],
+    products: [f64x4; 3],
     /// Of the parallelogram.
-    area: F64x4,
+    area: f64x4,
     normal: Vectors,
     /// All corners are numbers, and rounding does not decide the plane.
-    has_plane: Mask,
+    has_plane: f64x4,
 }
 
 /// The distances of parts of the surface from the edges of their triangles.
 struct EdgeDeviations {
     /// How far curves are from their edges.
-    side: F64x4,
+    side: f64x4,
     /// Second derivatives outwards, 0 where they point inwards.
-    outward: [F64x4; 3],
+    outward: [f64x4; 3],
     /// The greatest slopes of how far curves reach over the edges.
-    slopes: [F64x4; 3],
+    slopes: [f64x4; 3],
     /// Whether each curve stays within the angles at its edge.
-    is_plain: Mask,
+    is_plain: f64x4,
 }
 
 /// The squared chords of the angles to the neighbours, the greatest slopes of tangential
 /// displacements, and whether all have planes.
 struct Around {
-    squared: [F64x4; 3],
-    slopes: [F64x4; 3],
-    is_known: Mask,
+    squared: [f64x4; 3],
+    slopes: [f64x4; 3],
+    is_known: f64x4,
 }
 
 impl MovedFour {
@@ -96,9 +96,9 @@ impl MovedFour {
         let around = triangle.around(&opposite, self.opposite.each_ref().map(vectors), scale);
         let turn = triangle.turn(&bends, first);
         let is_plain = triangle.has_plane
-            & rest.simd_lt(F64x4::splat(f64::INFINITY))
+            & rest.simd_lt(f64x4::splat(f64::INFINITY))
             & edges.is_plain
-            & turn.simd_lt(F64x4::splat(NEARLY_ONE))
+            & turn.simd_lt(f64x4::splat(NEARLY_ONE))
             & around.is_known;
         // As `EdgeBounds::deviation_off` and `Deviation::bound` have it.
         let (most, off) = (height + rest, edges.side + aside);
@@ -112,16 +112,16 @@ impl MovedFour {
         // What is as high as h may be so far off along the plane: no farther than twice that and this part of h together.
         let twice = 2.0 * aside;
         let part = at_corners
-            .simd_gt(F64x4::ZERO)
-            .select((apart - twice) / at_corners, F64x4::ONE);
+            .simd_gt(f64x4::ZERO)
+            .bitselect((apart - twice) / at_corners, f64x4::ONE);
         for (edge, squared) in around.squared.into_iter().enumerate() {
-            is_helped = is_helped & within(edge) & squared.simd_le(F64x4::splat(SHARPEST));
+            is_helped = is_helped & within(edge) & squared.simd_le(f64x4::splat(SHARPEST));
             let (chord, times) = (squared.sqrt(), 1.0 + 0.5 * squared);
             let outward = edges.outward[edge];
             let reach = 0.125 * outward + curve + aside;
             // As `share_beyond` in `quartic_cell` has it.
             let room = triangle.area / triangle.lengths[edge] * (1.0 - DIRECTIONS * turn);
-            let share = room.simd_gt(reach).select(reach / room, F64x4::ONE);
+            let share = room.simd_gt(reach).bitselect(reach / room, f64x4::ONE);
             let along = Along {
                 ends: [lifts[edge], lifts[(edge + 1) % 3]].map(|lift| times * part * lift),
                 bend: times * part * seen[edge],
@@ -131,16 +131,16 @@ impl MovedFour {
             let at_edge = along.greatest() + others;
             among = among.fast_max(at_edge.fast_min(apart * times + chord * reach));
         }
-        let bound = is_helped.select(own.fast_min(among), own);
+        let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
         FoundFour {
             bound: is_plain
-                .select(bound * share, F64x4::splat(f64::INFINITY))
+                .bitselect(bound * share, f64x4::splat(f64::INFINITY))
                 .to_array(),
             height: (height * share).to_array(),
             least: triangle
                 .has_plane
-                .select((height - rest) * share, F64x4::ZERO)
+                .bitselect((height - rest) * share, f64x4::ZERO)
                 .to_array(),
         }
     }
@@ -149,21 +149,21 @@ impl MovedFour {
 /// The curve over an edge, point by point: its height, which is linear but for a bend, and how far it reaches over the edge, both times
 /// what they count.
 struct Along {
-    ends: [F64x4; 2],
-    bend: F64x4,
-    outward: F64x4,
+    ends: [f64x4; 2],
+    bend: f64x4,
+    outward: f64x4,
 }
 
 impl Along {
     /// The greatest sum of both anywhere along the edge.
     #[inline(always)]
-    fn greatest(&self) -> F64x4 {
+    fn greatest(&self) -> f64x4 {
         let on_side = |sign: f64| {
             let [from, to] = self.ends.map(|end| sign * end);
             let (rise, bend) = (to - from, self.outward - sign * self.bend);
             let inner = from + 0.5 * rise + 0.125 * bend + 0.5 * rise * rise / bend;
             let is_met = bend.simd_gt(2.0 * rise.abs());
-            from.fast_max(to).fast_max(is_met.select(inner, from))
+            from.fast_max(to).fast_max(is_met.bitselect(inner, from))
         };
         on_side(1.0).fast_max(on_side(-1.0))
     }
@@ -171,7 +171,7 @@ impl Along {
 
 /// The greatest derivative along an edge of a quadratic with these second derivatives along the edges and values at the corners.
 #[inline(always)]
-fn steepest([p, q, s]: &[F64x4; 3], [a, b, c]: [F64x4; 3]) -> F64x4 {
+fn steepest([p, q, s]: &[f64x4; 3], [a, b, c]: [f64x4; 3]) -> f64x4 {
     let bend = p.abs().fast_max(q.abs()).fast_max(s.abs());
     let rise = (b - a)
         .abs()
@@ -206,10 +206,10 @@ impl MovedFour {
         let normal_deviation = most.sqrt() + 1e-12;
         SeenFour {
             normal_deviation: is_known
-                .select(normal_deviation, F64x4::splat(2.0))
+                .bitselect(normal_deviation, f64x4::splat(2.0))
                 .to_array(),
             slope: is_known
-                .select(triangle.area / a.fast_max(b).fast_max(c), F64x4::ZERO)
+                .bitselect(triangle.area / a.fast_max(b).fast_max(c), f64x4::ZERO)
                 .to_array(),
         }
     }
@@ -240,8 +240,8 @@ impl Triangle {
 
     /// Heights of the surface's corners over the plane; how far corners were moved at most, and how far within the plane.
     #[inline(always)]
-    fn lifts(&self, steps: [Vectors; 3], scale: f64) -> ([F64x4; 3], F64x4, F64x4) {
-        let [mut moved, mut aside] = [F64x4::ZERO; 2];
+    fn lifts(&self, steps: [Vectors; 3], scale: f64) -> ([f64x4; 3], f64x4, f64x4) {
+        let [mut moved, mut aside] = [f64x4::ZERO; 2];
         let lifts = steps.map(|step| {
             let step = step.map(|axis| axis * scale);
             let lift = dot(&step, &self.normal);
@@ -256,8 +256,8 @@ impl Triangle {
 
     /// As in [`super::super::quartic_cell::QuarticJet::edge_bounds`].
     #[inline(always)]
-    fn edge_bounds(&self, bends: &[Vectors; 3], curve: F64x4, steep: F64x4) -> EdgeDeviations {
-        let zero = F64x4::ZERO;
+    fn edge_bounds(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
+        let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
         let (mut side, mut outwards, mut slopes) = (zero, [zero; 3], [zero; 3]);
         let mut is_plain = self.has_plane;
@@ -285,9 +285,9 @@ impl Triangle {
 
     /// ‖A‖ of `quartic_cell`, by changes of barycentric coordinates times the area.
     #[inline(always)]
-    fn turn(&self, bends: &[Vectors; 3], first: F64x4) -> F64x4 {
+    fn turn(&self, bends: &[Vectors; 3], first: f64x4) -> f64x4 {
         let across = [&self.edges[0], &self.edges[2]].map(|edge| cross(edge, &self.normal));
-        let mut most = F64x4::ZERO;
+        let mut most = f64x4::ZERO;
         for bend in bends {
             let [x, y] = across.each_ref().map(|across| dot(bend, across));
             // Edge 2 runs towards the first corner.
@@ -299,7 +299,7 @@ impl Triangle {
         let half_trace = 0.25 * (a + b + c);
         let stretch = (half_trace
             + (half_trace * half_trace - 0.75 * square)
-                .fast_max(F64x4::ZERO)
+                .fast_max(f64x4::ZERO)
                 .sqrt())
         .sqrt();
         (most.sqrt() + DIRECTIONS * first * stretch) / self.area
@@ -314,9 +314,9 @@ impl Triangle {
             (lengths + self.products[corner]) * share
         });
         let mut around = Around {
-            squared: [F64x4::ZERO; 3],
+            squared: [f64x4::ZERO; 3],
             slopes: free,
-            is_known: Mask::ALL,
+            is_known: f64x4::ZERO.simd_eq(f64x4::ZERO),
         };
         for edge in 0..3 {
             let out = minus(&opposite[edge].map(|axis| axis * scale), &corners[edge]);
@@ -331,8 +331,8 @@ impl Triangle {
                 .fast_min(free[(edge + 1) % 3])
                 .fast_min(area / product);
             around.is_known = around.is_known
-                & area.simd_gt(F64x4::ZERO)
-                & area.simd_lt(F64x4::splat(f64::INFINITY));
+                & area.simd_gt(f64x4::ZERO)
+                & area.simd_lt(f64x4::splat(f64::INFINITY));
         }
         around
     }
@@ -341,10 +341,10 @@ impl Triangle {
 /// The least and the greatest value of quadratics, by their second derivatives along the edges and their values at the corners, as
 /// [`super::super::quartic_cell`] has it of one.
 #[inline(always)]
-pub(super) fn quadratic_range([p, q, s]: [F64x4; 3], [a, b, c]: [F64x4; 3]) -> (F64x4, F64x4) {
+pub(super) fn quadratic_range([p, q, s]: [f64x4; 3], [a, b, c]: [f64x4; 3]) -> (f64x4, f64x4) {
     let (mut low, mut high) = (a.fast_min(b).fast_min(c), a.fast_max(b).fast_max(c));
-    let mut take = |is_met: Mask, value: F64x4| {
-        let value = is_met.select(value, a);
+    let mut take = |is_met: f64x4, value: f64x4| {
+        let value = is_met.bitselect(value, a);
         (low, high) = (low.fast_min(value), high.fast_max(value));
     };
     for (bend, from, to) in [(p, a, b), (q, b, c), (s, c, a)] {
@@ -363,11 +363,11 @@ pub(super) fn quadratic_range([p, q, s]: [F64x4; 3], [a, b, c]: [F64x4; 3]) -> (
     let share = 1.0 / determinant;
     let second = (2.0 * s * by_second - mixed * by_third) * share;
     let third = (2.0 * p * by_third - mixed * by_second) * share;
-    let zero = F64x4::ZERO;
+    let zero = f64x4::ZERO;
     let is_inside = determinant.simd_gt(zero)
         & second.simd_gt(zero)
         & third.simd_gt(zero)
-        & (second + third).simd_lt(F64x4::splat(1.0));
+        & (second + third).simd_lt(f64x4::splat(1.0));
     take(
         is_inside,
         a - 0.25 * (second * by_second + third * by_third),
@@ -378,13 +378,13 @@ pub(super) fn quadratic_range([p, q, s]: [F64x4; 3], [a, b, c]: [F64x4; 3]) -> (
 #[inline(always)]
 fn vectors(rows: &[[f64; FOUR]; 3]) -> Vectors {
     [
-        F64x4::new(rows[0]),
-        F64x4::new(rows[1]),
-        F64x4::new(rows[2]),
+        f64x4::new(rows[0]),
+        f64x4::new(rows[1]),
+        f64x4::new(rows[2]),
     ]
 }
 
 #[inline(always)]
-fn single(row: &[f32; FOUR]) -> F64x4 {
-    F64x4::new(row.map(f64::from))
+fn single(row: &[f32; FOUR]) -> f64x4 {
+    f64x4::new(row.map(f64::from))
 }

@@ -81,11 +81,11 @@ impl Case {
         let jet = QuarticJet::of(&piece);
         let bender = Bender::of(&jet);
         let bent = if is_even {
-            let [u, v, size] = from_fn(|i| F64x4::new(spots.map(|spot| spot[i])));
+            let [u, v, size] = from_fn(|i| f64x4::new(spots.map(|spot| spot[i])));
             bender.even([u, v], size)
         } else {
             bender.any(from_fn(|i| {
-                from_fn(|axis| F64x4::new(cells.map(|cell| cell.0[i][axis])))
+                from_fn(|axis| f64x4::new(cells.map(|cell| cell.0[i][axis])))
             }))
         };
         let mut moved = MovedFour::default();
@@ -247,7 +247,7 @@ fn what_is_no_number_has_no_bound() {
                 assert!(rows == 2 || found.least[1] == 0.0, "{found:?}");
             }
         }
-        case.bent.bends[1][2] = F64x4::new([0.0, bad, 0.0, 0.0]);
+        case.bent.bends[1][2] = f64x4::new([0.0, bad, 0.0, 0.0]);
         let found = case.moved.bounds(&case.bent.kept(case.scale), case.scale);
         let fails = found.least[1] > 0.0;
         assert!(found.bound[1] == f64::INFINITY && !fails, "{found:?}");

@@ -25,8 +25,8 @@
 
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
 use super::{Mark, RowExtent, RowTarget, WIDTH};
-use crate::lanes::{F32x4, Mask};
 use crate::vector::Extremes;
+use wide::f32x4;
 
 /// Parts that are measured together.
 pub(super) const LANES: usize = 4;
@@ -136,10 +136,10 @@ pub(super) fn measure(
     let (allowed, share) = (below(target.slope), below(target.displacement_share));
     let neighbour = above(target.normal_deviation);
     let range_share = below(target.range_share);
-    let size = F32x4::splat(parts.size);
+    let size = f32x4::splat(parts.size);
     let facing: f32 = if parts.is_turned { -1.0 } else { 1.0 };
     for i in 0..fours {
-        let at = |row: &Fours<'_>| row.map(|axis| F32x4::from(axis[i]));
+        let at = |row: &Fours<'_>| row.map(|axis| f32x4::from(axis[i]));
         let triangle = Triangle::of(at(&e0), at(&e1), facing);
         let bends = [at(&w0), at(&w1), at(&w2)];
         let off = 2.0 * triangle.unsure * size * triangle.length;
@@ -156,19 +156,19 @@ pub(super) fn measure(
         let (turn, room) = triangle.turn(&bends, off, rest);
         let is_plain = edges.is_plain
             & turn.simd_lt(room)
-            & edges.slope.simd_le(F32x4::splat(allowed))
-            & (chord * chord).simd_le(F32x4::splat(SHARPEST));
+            & edges.slope.simd_le(f32x4::splat(allowed))
+            & (chord * chord).simd_le(f32x4::splat(SHARPEST));
         // What reaches over an edge, as `share_beyond` in `quartic_cell` has it.
-        let bend = larger(seen.map(F32x4::abs)) + 1.6 * triangle.unsure * size;
+        let bend = larger(seen.map(f32x4::abs)) + 1.6 * triangle.unsure * size;
         let inside = room - DIRECTIONS as f32 * turn;
         let reach = edges.displacement * triangle.length;
-        let beyond = inside.simd_gt(reach).select(reach / inside, F32x4::ONE);
+        let beyond = inside.simd_gt(reach).bitselect(reach / inside, f32x4::ONE);
         let at_edges = 0.125 * bend + rest.curve + (bend + rest.first) * beyond;
         let among =
             at_edges.fast_min(height) * (1.0 + 0.5 * chord * chord) + chord * edges.displacement;
         let value = height.fast_max(among) * A_LITTLE_MORE;
         bound[i] = is_plain
-            .select(value, F32x4::splat(f32::INFINITY))
+            .bitselect(value, f32x4::splat(f32::INFINITY))
             .to_array();
         low[i] = (least - rest.height).to_array();
         normal_deviations[i] = normal_deviation.to_array();
@@ -180,38 +180,38 @@ pub(super) fn measure(
 /// Four triangles.
 struct Triangle {
     /// The edges from the first corner, and from the second to the third.
-    a: [F32x4; 3],
-    b: [F32x4; 3],
-    c: [F32x4; 3],
+    a: [f32x4; 3],
+    b: [f32x4; 3],
+    c: [f32x4; 3],
     /// 1, or −1 where they run the other way.
     facing: f32,
     /// Of the parallelogram.
-    area: F32x4,
-    normal: [F32x4; 3],
+    area: f32x4,
+    normal: [f32x4; 3],
     /// The squares of the edges' lengths, in that order.
-    squares: [F32x4; 3],
+    squares: [f32x4; 3],
     /// The longest edge's.
-    longest: F32x4,
-    length: F32x4,
+    longest: f32x4,
+    length: f32x4,
     /// The products of the edges that meet in each corner.
-    products: [F32x4; 3],
+    products: [f32x4; 3],
     /// η.
-    unsure: F32x4,
+    unsure: f32x4,
 }
 
 /// The distances of parts of the surface from the edges of their triangles.
 struct EdgeDeviations {
     /// How far they reach over them.
-    displacement: F32x4,
+    displacement: f32x4,
     /// The greatest slope of that displacement, or of the inner part.
-    slope: F32x4,
+    slope: f32x4,
     /// Whether each curve stays within the angles at its edge.
-    is_plain: Mask,
+    is_plain: f32x4,
 }
 
 impl Triangle {
     #[inline(always)]
-    fn of(a: [F32x4; 3], b: [F32x4; 3], facing: f32) -> Self {
+    fn of(a: [f32x4; 3], b: [f32x4; 3], facing: f32) -> Self {
         let c = minus(b, a);
         let across = cross(a, b);
         let area = dot(across, across).sqrt();
@@ -237,7 +237,7 @@ impl Triangle {
 
     /// The chord between the triangle's normal and those at its corners.
     #[inline(always)]
-    fn normal_deviation(&self, normals: [[F32x4; 3]; 3]) -> F32x4 {
+    fn normal_deviation(&self, normals: [[f32x4; 3]; 3]) -> f32x4 {
         let apart = normals.map(|normal| {
             let d = minus(normal, self.normal);
             dot(d, d)
@@ -247,7 +247,7 @@ impl Triangle {
 
     /// The tangent of its least angle.
     #[inline(always)]
-    fn slope(&self) -> F32x4 {
+    fn slope(&self) -> f32x4 {
         self.area * (1.0 - 4.0 * self.unsure) / larger(self.products)
     }
 
@@ -255,8 +255,8 @@ impl Triangle {
     #[inline(always)]
     fn edge_bounds(
         &self,
-        [wa, wc, wb]: &[[F32x4; 3]; 3],
-        off: F32x4,
+        [wa, wc, wb]: &[[f32x4; 3]; 3],
+        off: f32x4,
         rest: &Remainder,
         share: f32,
     ) -> EdgeDeviations {
@@ -277,7 +277,7 @@ impl Triangle {
         let out = out.map(|out| self.facing * out);
         let steep = rest.steep * self.length + off;
         let less = steep + self.unsure * self.longest;
-        let ratio = |out: F32x4, bend: &[F32x4; 3], edge: [F32x4; 3], square: F32x4| {
+        let ratio = |out: f32x4, bend: &[f32x4; 3], edge: [f32x4; 3], square: f32x4| {
             (0.5 * out.abs() + steep) / (square - 0.5 * dot(*bend, edge).abs() - less)
         };
         let (ra, rb, rc) = (
@@ -286,11 +286,11 @@ impl Triangle {
             ratio(out[2], wc, c, lc),
         );
         // Negative where there is no room at all.
-        let zero = F32x4::ZERO;
+        let zero = f32x4::ZERO;
         let is_roomy = ra.simd_ge(zero) & rb.simd_ge(zero) & rc.simd_ge(zero);
         let reach = larger(out).fast_max(zero) + off;
         let displacement = 0.125 * reach / la.fast_min(lb).fast_min(lc).sqrt() + rest.curve;
-        let [first, second, third] = self.products.map(F32x4::abs);
+        let [first, second, third] = self.products.map(f32x4::abs);
         let most = share * area * (1.0 - 8.0 * self.unsure);
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
@@ -304,7 +304,7 @@ impl Triangle {
 
     /// ‖A‖ of `quartic_cell`, by changes of barycentric coordinates times the area, and its limit.
     #[inline(always)]
-    fn turn(&self, bends: &[[F32x4; 3]; 3], off: F32x4, rest: &Remainder) -> (F32x4, F32x4) {
+    fn turn(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> (f32x4, f32x4) {
         let across = [self.a, self.b].map(|edge| cross(edge, self.normal));
         let stretched = bends.map(|bend| {
             let [x, y] = across.map(|across| dot(bend, across));
@@ -322,8 +322,8 @@ impl Triangle {
 /// corners, by its second derivatives along the edges from the first corner to the second, on to
 /// the third, and back.
 #[inline(always)]
-fn heights([p, q, s]: [F32x4; 3]) -> (F32x4, F32x4) {
-    let most = larger([p, q, s].map(F32x4::abs));
+fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
+    let most = larger([p, q, s].map(f32x4::abs));
     let edges = 0.125 * most;
     let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
     let total = l0 + l1 + l2;
@@ -331,25 +331,24 @@ fn heights([p, q, s]: [F32x4; 3]) -> (F32x4, F32x4) {
     let inner = (0.5 * (p * share) * q * s).abs();
     let is_known = total
         .abs()
-        .simd_gt((UNKNOWN * most * most).fast_max(F32x4::splat(VANISHING)));
-    let outside = F32x4::splat(-NEARLY);
+        .simd_gt((UNKNOWN * most * most).fast_max(f32x4::splat(VANISHING)));
+    let outside = f32x4::splat(-NEARLY);
     let is_inside = [l0, l1, l2].map(|l| (l * share).simd_gt(outside));
-    let is_inner = is_known & is_inside[0] & is_inside[1] & is_inside[2];
-    let known = is_inner.select(inner, F32x4::ZERO);
+    let known = is_known & is_inside[0] & is_inside[1] & is_inside[2] & inner;
     // The greatest bend of either sign, and all as it counts.
     let bends_up = larger([p, q, s]).simd_ge(most);
     let all = p + q + s;
-    let slope = 0.25 * (bends_up.select(all, -all) - 2.0 * most);
-    let unknown = edges + slope.fast_max(F32x4::ZERO).fast_min(most * (1.0 / 24.0));
-    let above = is_known.select(known * (1.0 + NEARLY), unknown);
+    let slope = 0.25 * (bends_up.bitselect(all, -all) - 2.0 * most);
+    let unknown = edges + slope.fast_max(f32x4::ZERO).fast_min(most * (1.0 / 24.0));
+    let above = is_known.bitselect(known * (1.0 + NEARLY), unknown);
     (edges.fast_max(known), edges.fast_max(above) * A_LITTLE_MORE)
 }
 
 /// The range of the heights of such a quadratic over the edges.
 #[inline(always)]
-fn edge_range([p, q, s]: [F32x4; 3]) -> F32x4 {
+fn edge_range([p, q, s]: [f32x4; 3]) -> f32x4 {
     let (low, high) = (p.fast_min(q).fast_min(s), p.fast_max(q).fast_max(s));
-    0.125 * (high.fast_max(F32x4::ZERO) - low.fast_min(F32x4::ZERO))
+    0.125 * (high.fast_max(f32x4::ZERO) - low.fast_min(f32x4::ZERO))
 }
 
 /// Rows of numbers, four at a time, by axis.
@@ -396,17 +395,17 @@ impl Found {
 }
 
 #[inline(always)]
-fn minus(a: [F32x4; 3], b: [F32x4; 3]) -> [F32x4; 3] {
+fn minus(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-fn dot(a: [F32x4; 3], b: [F32x4; 3]) -> F32x4 {
+fn dot(a: [f32x4; 3], b: [f32x4; 3]) -> f32x4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-fn cross(a: [F32x4; 3], b: [F32x4; 3]) -> [F32x4; 3] {
+fn cross(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -415,13 +414,13 @@ fn cross(a: [F32x4; 3], b: [F32x4; 3]) -> [F32x4; 3] {
 }
 
 #[inline(always)]
-fn scaled(a: [F32x4; 3], by: F32x4) -> [F32x4; 3] {
+fn scaled(a: [f32x4; 3], by: f32x4) -> [f32x4; 3] {
     a.map(|a| a * by)
 }
 
 /// The greatest of three.
 #[inline(always)]
-fn larger([a, b, c]: [F32x4; 3]) -> F32x4 {
+fn larger([a, b, c]: [f32x4; 3]) -> f32x4 {
     a.fast_max(b).fast_max(c)
 }
 

@@ -7,14 +7,12 @@
 //! vertices are jobs of one place. The results of a job fill consecutive *slots*; each vertex has
 //! the number of its slot.
 
-use core::array::from_fn;
-
-use crate::lanes::F64x4;
 use crate::limit::area_weighted_normal;
 use crate::parallel;
 use crate::patch::Quartic;
 use crate::progress::uncancelled;
 use crate::vector::{DVec3, unit_or_zero, vector};
+use wide::f64x4;
 
 /// Weights that are multiplied together.
 pub(super) const LANES: usize = 4;
@@ -123,7 +121,7 @@ pub(super) fn groups(points: usize) -> usize {
 struct Gathered {
     first: [f64; 3],
     /// The differences of the others to it, by group and axis.
-    differences: Vec<[F64x4; 3]>,
+    differences: Vec<[f64x4; 3]>,
     /// Tangents are multiplied by this.
     scale: f64,
     /// Cross products whose squared length is not above this have no direction.
@@ -137,19 +135,18 @@ impl Gathered {
         let Some((&first, others)) = points.split_first() else {
             return;
         };
-        let first = F64x4::from(inputs[first as usize]);
+        let first = f64x4::from(inputs[first as usize]);
         let [x, y, z, _] = first.to_array();
         self.first = [x, y, z];
         self.differences.clear();
-        let mut greatest = F64x4::ZERO;
+        let mut greatest = f64x4::ZERO;
         for group in others.as_chunks::<LANES>().0 {
-            let differences = group.map(|point| F64x4::from(inputs[point as usize]) - first);
+            let differences = group.map(|point| f64x4::from(inputs[point as usize]) - first);
             if NORMALS {
-                let [a, b, c, d] = differences.map(F64x4::abs);
+                let [a, b, c, d] = differences.map(f64x4::abs);
                 greatest = greatest.fast_max(a.fast_max(b).fast_max(c.fast_max(d)));
             }
-            let differences = differences.map(F64x4::to_array);
-            let [x, y, z] = from_fn(|axis| F64x4::new(differences.map(|point| point[axis])));
+            let [x, y, z, _] = f64x4::transpose(differences);
             self.differences.push([x, y, z]);
         }
         if NORMALS {
@@ -160,7 +157,7 @@ impl Gathered {
     /// The factor of tangents, and the bound below which they span no plane, by the greatest
     /// differences and their common point.
     #[inline]
-    fn measure(&mut self, differences: F64x4, first: F64x4) {
+    fn measure(&mut self, differences: f64x4, first: f64x4) {
         let [size, first] = [differences, first].map(|of| {
             let [x, y, z, _] = of.to_array();
             x.max(y).max(z)
@@ -180,9 +177,9 @@ impl Gathered {
     /// long again.
     #[inline]
     fn sum(&self, weights: &[[f64; LANES]]) -> [f64; 3] {
-        let mut sums = [F64x4::ZERO; 3];
+        let mut sums = [f64x4::ZERO; 3];
         for (&weights, differences) in weights.iter().zip(&self.differences) {
-            let weights = F64x4::from(weights);
+            let weights = f64x4::from(weights);
             for (sum, &difference) in sums.iter_mut().zip(differences) {
                 *sum += weights * difference;
             }

@@ -212,7 +212,7 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
         let sign = if case % 2 == 0 { 1.0 } else { -1.0 };
         let bends = [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]].map(|edge| (sign * form(edge)) as f32);
         let expected = quadratic_height(bends.map(f64::from));
-        let (low, high) = heights(bends.map(F32x4::splat));
+        let (low, high) = heights(bends.map(f32x4::splat));
         let [low, high] = [low, high].map(|height| f64::from(height.to_array()[0]));
         assert!(high >= expected, "{bends:?}: {high:e}, not {expected:e}");
         assert!(

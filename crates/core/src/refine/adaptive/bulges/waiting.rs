@@ -7,9 +7,9 @@ use super::super::emitted::Emitted;
 use super::super::surface::QuarticPiece;
 use super::Bulge;
 use crate::certificate::{Bender, Bent, Cell, FOUR, QuarticJet, SubTriangle, normals};
-use crate::lanes::F64x4;
 use crate::patch::ParamTriangle;
 use crate::vector::{unit_or_zero, vector};
+use wide::f64x4;
 
 /// Parts of third and fourth degree below this part of the range are not worth a closer look.
 const SMOOTH: f64 = 0.05;
@@ -87,12 +87,12 @@ impl Waiting {
             found,
         };
         look.each(&self.even, |four| {
-            let at = [from_fn(|l| four[l].u), from_fn(|l| four[l].v)].map(F64x4::new);
-            bender.even(at, F64x4::new(from_fn(|l| four[l].size)))
+            let at = [from_fn(|l| four[l].u), from_fn(|l| four[l].v)].map(f64x4::new);
+            bender.even(at, f64x4::new(from_fn(|l| four[l].size)))
         });
         look.each(&self.other, |four| {
             let place =
-                |corner: usize, axis: usize| F64x4::new(from_fn(|l| four[l].0[corner][axis]));
+                |corner: usize, axis: usize| f64x4::new(from_fn(|l| four[l].0[corner][axis]));
             bender.any([0, 1, 2].map(|corner| [place(corner, 0), place(corner, 1)]))
         });
         self.even.clear();
@@ -140,7 +140,7 @@ impl Look<'_> {
                 }
             }
             let bent = bend(four.map(|part| part.at));
-            let (low, high, rest) = bent.heights(&normals(&a.map(F64x4::new), &b.map(F64x4::new)));
+            let (low, high, rest) = bent.heights(&normals(&a.map(f64x4::new), &b.map(f64x4::new)));
             let (low, high, rest) = (low.to_array(), high.to_array(), rest.to_array());
             let kept = bent.kept(self.found.scale);
             for (l, part) in some.iter().enumerate() {

@@ -11,9 +11,9 @@ use super::super::surface::QuarticPiece;
 use super::Measuring;
 use crate::certificate::{Bender, BentFour, Cell, FOUR, MovedFour, QuarticJet};
 use crate::index::VertexId;
-use crate::lanes::F64x4;
 use crate::parallel::IsStopped;
 use crate::patch::Rules;
+use wide::f64x4;
 
 /// Parts of a piece that wait at most.
 const MOST: usize = 32;
@@ -89,7 +89,7 @@ impl Fours<'_, '_> {
         for some in waiting.chunks(FOUR) {
             let part = |l: usize| &some[l.min(some.len() - 1)];
             let place =
-                |corner: usize, axis: usize| F64x4::new(from_fn(|l| part(l).cell.0[corner][axis]));
+                |corner: usize, axis: usize| f64x4::new(from_fn(|l| part(l).cell.0[corner][axis]));
             let bent = bender.any([0, 1, 2].map(|corner| [place(corner, 0), place(corner, 1)]));
             let (kept, mut parts) = (bent.kept(self.scale), BentFour::UNKNOWN);
             let (mut normals, mut is_gathered) = ([[[0.0; FOUR]; 3]; 3], [false; FOUR]);
