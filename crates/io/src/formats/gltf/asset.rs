@@ -105,7 +105,8 @@ impl Asset {
         self.scene.largest(mesh)
     }
 
-    /// The triangles of a mesh, its primitives joined into one soup; none where it has only points and lines.
+    /// The faces of a mesh, its primitives joined into one soup; none where it has only points and lines. They are triangles, and
+    /// polygons where `FB_ngon_encoding` or `EXT_mesh_polygon` has some.
     ///
     /// # Errors
     /// There is no such mesh, or an accessor breaks the rules; the flaw names it.
@@ -150,7 +151,7 @@ impl Asset {
         let mut primitives = Vec::new();
         for (i, primitive) in at.require("primitives")?.items()?.enumerate() {
             let found = self.source.primitive(&primitive, i, with_attributes)?;
-            primitives.extend(found.filter(|found| !found.triangles.is_empty()));
+            primitives.extend(found.filter(|found| !found.faces.is_empty()));
         }
         parts::join(primitives, joining, is_wanted)
     }
@@ -200,13 +201,14 @@ impl Asset {
     pub fn scene_soup(&self) -> Result<PolygonSoup, ReadError> {
         let mut all = PolygonSoup::default();
         let mut names = BTreeSet::new();
-        let mut channels = SceneChannels::default();
+        let (mut channels, mut as_triangles) = (SceneChannels::default(), 0);
         for mesh in 0..self.mesh_count() {
             let own = self.mesh(mesh, Joining::Together)?;
             let materials = self.materials_of(mesh).map_err(|flaw| self.in_file(flaw))?;
             let attributes = own.parts.iter().flat_map(|part| &part.attributes);
             names.extend(attributes.filter_map(|name| left_out(name)));
             names.extend(own.has_targets().then_some("morph targets"));
+            as_triangles += own.as_triangles;
             for placement in self.scene.shown(mesh) {
                 let first = all.positions.len();
                 let faces = own.soup.faces.len() + all.faces.len();
@@ -230,6 +232,10 @@ impl Asset {
         let channels = channels.into_channels(&self.source);
         all.channels = channels.map_err(|flaw| self.in_file(flaw))?;
         all.left_out = names.into_iter().map(str::to_owned).collect();
+        if as_triangles > 0 {
+            let words = format!("polygons, {as_triangles} of which are taken as their triangles");
+            all.left_out.push(words);
+        }
         if self.source.json.get("materials").is_some() {
             all.left_out
                 .push("colours and textures of materials".to_owned());
