@@ -48,6 +48,7 @@ pub(crate) fn refined(
             continue;
         };
         left_out.extend(too_wide(&own));
+        left_out.extend(own.cut_polygons());
         let build = options::build(told).weld(Weld::Never).keep_windings(true);
         let control = Control::new(own.soup.clone(), &build, told, observer)?;
         let lengths = Scale {
@@ -126,7 +127,7 @@ fn channel(attribute: &CornerAttribute) -> Channel {
     };
     let (name, width) = (attribute.name.clone(), attribute.width);
     Channel::new(name, semantic, Domain::Corner, width)
-        .with(attribute.values.clone(), attribute.corners.concat())
+        .with(attribute.values.clone(), attribute.corners.clone())
 }
 
 /// By face, its primitive: edges stay where one meets another.

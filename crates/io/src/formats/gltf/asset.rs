@@ -232,10 +232,7 @@ impl Asset {
         let channels = channels.into_channels(&self.source);
         all.channels = channels.map_err(|flaw| self.in_file(flaw))?;
         all.left_out = names.into_iter().map(str::to_owned).collect();
-        if as_triangles > 0 {
-            let words = format!("polygons, {as_triangles} of which are taken as their triangles");
-            all.left_out.push(words);
-        }
+        all.left_out.extend(parts::cut_polygons(as_triangles));
         if self.source.json.get("materials").is_some() {
             all.left_out
                 .push("colours and textures of materials".to_owned());

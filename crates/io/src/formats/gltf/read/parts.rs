@@ -54,7 +54,7 @@ pub struct KeptApart {
 pub struct MeshSoup {
     /// Positions in the mesh's own coordinates and faces; connected by its indices alone.
     pub soup: PolygonSoup,
-    /// Polygons of which there are the triangles instead: these are no fan, or have holes or vertices inside.
+    /// Polygons of which there are the triangles instead: they have holes or vertices inside, or their triangles are no fan.
     pub as_triangles: usize,
     /// Which faces are which primitive's.
     pub parts: Vec<Part>,
@@ -72,7 +72,18 @@ pub struct MeshSoup {
     pub influences: Vec<Vec<(u32, f64)>>,
 }
 
+/// The polygons of which there are the triangles instead, in words, if there are so many.
+pub(crate) fn cut_polygons(count: usize) -> Option<String> {
+    let words = "polygons with holes, with vertices inside or whose triangles are no fan, which are triangles instead";
+    (count > 0).then(|| format!("{words} ({count})"))
+}
+
 impl MeshSoup {
+    /// Polygons that are left out, in words, if some are.
+    pub fn cut_polygons(&self) -> Option<String> {
+        cut_polygons(self.as_triangles)
+    }
+
     /// Whether there are morph targets.
     pub fn has_targets(&self) -> bool {
         self.parts.iter().any(|part| !part.targets.is_empty())
