@@ -80,7 +80,7 @@ pub fn edit(bytes: &[u8]) {
         let positions = &own.soup.positions;
         for part in own.parts.iter().filter(|part| part.faces.len() <= LARGEST) {
             let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
-            let fans = faces.flat_map(|face| (2..face.len()).map(|i| [face[0], face[i - 1], face[i]]));
+            let fans = faces.flat_map(|face| (2..face.len()).map(move |i| [face[0], face[i - 1], face[i]]));
             let triangles: Vec<[u32; 3]> = fans.collect();
             let targets: Vec<Vec<VertexAttribute>> =
                 (0..part.targets.len()).map(|target| vec![displacement(&own, target)]).collect();

@@ -53,6 +53,25 @@ impl Soup {
     pub(crate) fn is_of_quads(&self) -> bool {
         is_of_quads(&self.soup.faces)
     }
+
+    /// It with the triangles that a glTF document has for polygons, where these do not become quads.
+    fn as_cut(mut self) -> anyhow::Result<Self> {
+        let has_polygons = self.soup.faces.iter().any(|face| face.len() > 3);
+        let Some((asset, _)) = &self.asset else {
+            return Ok(self);
+        };
+        if self.quads.is_some() || !has_polygons {
+            return Ok(self);
+        }
+        let cut = asset.scene_triangles()?;
+        for own in self.soup.channels.iter_mut().chain(&mut self.normals) {
+            if let Some(cut) = cut.channels.iter().find(|cut| cut.name == own.name) {
+                (own.values, own.indices) = (cut.values.clone(), cut.indices.clone());
+            }
+        }
+        (self.soup.positions, self.soup.faces) = (cut.positions, cut.faces);
+        Ok(self)
+    }
 }
 
 /// Whether most faces are quads: they are then a cage for Catmull–Clark's scheme, as modelling programs mean it.
@@ -451,6 +470,7 @@ pub(crate) fn connected(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.in_unit(read.unit).options()?;
+    let read = read.as_cut()?;
     let (name, mut soup) = (read.name, read.soup);
     let faces = counted(soup.faces.len(), "face", "faces");
     progress.stage(format!("connecting {faces}"));

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use limitmesh::mesh::{Channel, Domain, Semantic, Weld};
 use limitmesh::progress::Observer;
 use limitmesh::refine::Exact;
+use limitmesh::scheme::Family;
 use limitmesh_io::gltf::{
     CornerAttribute, Geometry, Joining, MeshSoup, Part, VertexAttribute, WithTangents,
 };
@@ -93,6 +94,10 @@ fn soup_of(
         },
     };
     let mut own = asset.mesh(number, joining)?;
+    let scheme = options::scheme(told, &own.soup)?;
+    if !matches!(scheme.family(), Some(Family::CatmullClark)) {
+        own = asset.triangles_of(number, joining, |_| true)?;
+    }
     if own.parts.is_empty() {
         return Ok(None);
     }

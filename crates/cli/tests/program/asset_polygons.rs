@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use limitmesh::mesh::{Channel, Semantic};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -85,16 +86,16 @@ impl Cage {
         for [x, y, z] in &self.points {
             writeln!(text, "v {x} {y} {z}").expect("text");
         }
-        for corner in 0..self.corners().count() {
-            let [u, v] = texture(corner);
-            writeln!(text, "vt {u} {}", 1.0 - v).expect("text");
+        for point in &self.points {
+            for [u, v] in [0, 1].map(|face| texture(face, point)) {
+                writeln!(text, "vt {u} {}", 1.0 - v).expect("text");
+            }
         }
-        let mut corner = 0;
-        for face in &self.faces {
+        for (number, face) in self.faces.iter().enumerate() {
             text.push('f');
             for v in face {
-                corner += 1;
-                write!(text, " {}/{corner}", v + 1).expect("text");
+                let coordinates = 2 * v + 1 + u32::from(number > 0);
+                write!(text, " {}/{coordinates}", v + 1).expect("text");
             }
             text.push('\n');
         }
@@ -112,7 +113,12 @@ impl Cage {
         let corners: Vec<usize> = self.corners().collect();
         let points = corners.iter().map(|&v| self.points[v].map(|x| x as f32));
         let points: Vec<[f32; 3]> = points.collect();
-        let coordinates: Vec<f32> = (0..corners.len()).flat_map(texture).collect();
+        let faces = self.faces.iter().enumerate();
+        let coordinates = faces.flat_map(|(number, face)| {
+            let own = face.iter().map(move |&v| (number, v as usize));
+            own.flat_map(|(number, v)| texture(number, &self.points[v]))
+        });
+        let coordinates: Vec<f32> = coordinates.map(|x| x as f32).collect();
         let mut attributes = json!({"POSITION": builder.points(&points), "TEXCOORD_0": builder.floats(&coordinates, 2)});
         let (mut fans, mut loops) = (Vec::new(), Vec::new());
         let (mut fan_starts, mut loop_starts) = (Vec::new(), Vec::new());
@@ -163,9 +169,10 @@ impl Cage {
     }
 }
 
-/// Texture coordinates of a corner, as glTF has them.
-fn texture(corner: usize) -> [f32; 2] {
-    [(corner % 7) as f32 / 8.0, (corner % 5) as f32 / 8.0]
+/// Texture coordinates at a point, as glTF has them; those of the first face are apart.
+fn texture(face: usize, [x, y, z]: &[f64; 3]) -> [f64; 2] {
+    let first = if face == 0 { 1.0 } else { 0.0 };
+    [x * y + first, z * z / 8.0 - x]
 }
 
 /// What was refined, and `said` on the way.
@@ -234,7 +241,8 @@ fn assets_of_polygons_are_refined_as_obj_files_are() {
 
 /// Each corner of an asset's triangles has texture coordinates that the other has there.
 fn assert_same_texture(expected: &limitmesh::PolygonSoup, glb: &Glb) {
-    let channel = &expected.channels[0];
+    let is_texture = |own: &&Channel| own.semantic == Semantic::TextureCoordinates;
+    let channel = expected.channels.iter().find(is_texture).expect("some");
     let mut at = vec![Vec::new(); expected.positions.len()];
     for (corner, &v) in expected.faces.iter().flatten().enumerate() {
         at[v as usize].push(channel.value(corner));
@@ -246,7 +254,10 @@ fn assert_same_texture(expected: &limitmesh::PolygonSoup, glb: &Glb) {
         let is_same = |other: &&&[f64]| {
             (own[0] - other[0]).abs() < 1e-6 && (own[1] - (1.0 - other[1])).abs() < 1e-6
         };
-        assert!(here.iter().any(|other| is_same(&other)), "{own:?} at {p:?}");
+        assert!(
+            here.iter().any(|other| is_same(&other)),
+            "{own:?} at {p:?}, not {here:?}"
+        );
     }
 }
 
@@ -330,9 +341,10 @@ fn polygons_of_other_assets_are_told_apart() {
         "has none but triangles",
     );
     // A fan that is none is said to be.
+    let indices = builder.indices(&[[0, 2, 3], [0, 1, 5]]);
     let primitive = &mut builder.json["meshes"][0]["primitives"][0];
     primitive["extensions"] = json!({"FB_ngon_encoding": {}});
-    primitive["indices"] = json!(builder.indices(&[[0, 2, 3], [0, 1, 5]]));
+    primitive["indices"] = json!(indices);
     builder.write(&input);
     done("refine {} -o {}", &[&input, &output]).saying("meshes[0]: left out: polygons with holes");
     // What is for triangles cuts quads into these.

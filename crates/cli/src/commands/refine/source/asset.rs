@@ -98,17 +98,21 @@ impl AssetSource {
         Ok((source, arguments))
     }
 
-    /// A mesh as it is shown, its vertices merged so.
+    /// A mesh as it is shown, its vertices merged so, with polygons or the triangles that the document has for them.
     fn as_shown(
         &self,
         mesh: usize,
         weld: Weld,
+        has_polygons: bool,
         arguments: &RefineArguments,
     ) -> Result<MeshSoup, ReadError> {
         let scale = self.asset.stretch(mesh);
         let joining = arguments.asset.joining(weld, scale);
         let is_wanted = |primitive| self.selection.has(mesh, primitive);
-        let mut own = self.asset.mesh_of(mesh, joining, is_wanted)?;
+        let mut own = match has_polygons {
+            true => self.asset.mesh_of(mesh, joining, is_wanted)?,
+            false => self.asset.triangles_of(mesh, joining, is_wanted)?,
+        };
         scene::enlarge(&mut own.soup, scale);
         Ok(own)
     }
@@ -149,13 +153,16 @@ impl Source for AssetSource {
         progress: &Progress,
     ) -> anyhow::Result<Option<(Read, Item<AssetMesh>)>> {
         let weld = arguments.build.options()?.weld;
-        let mut own = self.as_shown(number, weld, arguments)?;
+        let mut own = self.as_shown(number, weld, true, arguments)?;
         if own.parts.is_empty() {
             return Ok(None);
         }
         let name = self.asset.mesh_name(number);
         let is_of_quads = input::is_of_quads(&own.soup.faces);
         let arguments = &by_faces(arguments, &name, is_of_quads, progress);
+        if !arguments.has_quads() && own.soup.faces.iter().any(|face| face.len() > 3) {
+            own = self.as_shown(number, weld, false, arguments)?;
+        }
         // By glTF's rules the winding says which side is drawn.
         let options = BuildOptions::default()
             .weld(Weld::Never)
@@ -190,7 +197,7 @@ impl Source for AssetSource {
         let is_of_triangles = matches!(control, ControlMesh::Triangles(..));
         let (mesh, trace) = control.into_parts();
         let near = input::nearly_closed(&mesh, weld, |weld| {
-            let soup = self.as_shown(number, weld, arguments).ok()?.soup;
+            let soup = self.as_shown(number, weld, true, arguments).ok()?.soup;
             Some(Mesh::from_soup(&soup, &options).ok()?.0)
         });
         progress.notes(near.map(|near| format!("{name}: {near}")));

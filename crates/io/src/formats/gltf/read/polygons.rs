@@ -65,24 +65,29 @@ impl Polygons {
 }
 
 impl Source {
-    /// The faces of the primitive at `at`, which has `count` vertices, given its triangles.
+    /// The faces of the primitive at `at`, which has `count` vertices, given its triangles: these where polygons are not wanted.
     pub(super) fn polygons(
         &self,
         at: &At<'_>,
         mode: Mode,
         count: usize,
+        are_wanted: bool,
         is_compressed: bool,
         triangles: impl FnOnce() -> Result<Vec<[u32; 3]>>,
     ) -> Result<Polygons> {
         let is_plain = mode == Mode::Triangles;
         let loops = at.path(&["extensions", LOOPS]);
-        if let Some(extension) = loops.filter(|_| is_plain || mode == Mode::Loops) {
+        if let Some(extension) = loops.filter(|_| is_plain && are_wanted || mode == Mode::Loops) {
+            if let (false, Some(own)) = (are_wanted, extension.get("triangleIndices")) {
+                return Ok(Polygons::of_triangles(&self.triangles_of(&own, count)?));
+            }
             return self.loops(at, &extension, mode, count, triangles);
         }
         let triangles = triangles()?;
         // Draco puts triangles in an order of its own.
         let is_in_order = is_plain && !is_compressed;
-        Ok(match at.path(&["extensions", NGONS]) {
+        let fans = at.path(&["extensions", NGONS]).filter(|_| are_wanted);
+        Ok(match fans {
             Some(_) if is_in_order => Polygons::of_fans(&triangles),
             Some(_) => Polygons {
                 as_triangles: triangles.len(),

@@ -113,12 +113,14 @@ pub(crate) fn mode(primitive: &At<'_>) -> Result<Mode> {
 }
 
 impl Source {
-    /// The primitive at `at`, number `index` of its mesh, perhaps with its attributes; `None` if it has no triangles to be.
+    /// The primitive at `at`, number `index` of its mesh, perhaps with its attributes, and its polygons as polygons or as the triangles that
+    /// the document cuts them into; `None` if it has no triangles to be.
     pub(crate) fn primitive(
         &self,
         at: &At<'_>,
         index: usize,
         with_attributes: bool,
+        with_polygons: bool,
     ) -> Result<Option<Primitive>> {
         let mode = mode(at)?;
         let attributes = at.require("attributes")?;
@@ -195,7 +197,7 @@ impl Source {
         let Polygons {
             faces,
             as_triangles,
-        } = self.polygons(at, mode, count, is_compressed, triangles)?;
+        } = self.polygons(at, mode, count, with_polygons, is_compressed, triangles)?;
         Ok(Some(Primitive {
             index,
             positions,
