@@ -64,6 +64,8 @@ fn house() -> Cage {
 enum Encoding {
     Fans,
     Loops,
+    /// By triangles alone.
+    Nothing,
 }
 
 impl Cage {
@@ -138,6 +140,7 @@ impl Cage {
             builder.accessor(layout)
         };
         let (name, extension) = match encoding {
+            Encoding::Nothing => ("OTHER_thing", json!({})),
             Encoding::Fans => ("FB_ngon_encoding", json!({})),
             Encoding::Loops => (
                 "EXT_mesh_polygon",
@@ -205,10 +208,9 @@ fn assets_of_polygons_are_refined_as_obj_files_are() {
     let ways = [
         (UNIFORM, "so that --scheme catmull-clark holds"),
         (
-            "--tolerance 0.5% --faces triangles --divide-flat",
+            "--tolerance 0.02 --faces triangles --divide-flat",
             "meshes[0]: its faces are quads for the most part, so that --scheme catmull-clark holds",
         ),
-        ("--method uniform --levels 2 --limit --scheme loop", ""),
     ];
     for (cage, encoding) in [
         (tube(false), Encoding::Fans),
@@ -259,6 +261,29 @@ fn assert_same_texture(expected: &limitmesh::PolygonSoup, glb: &Glb) {
             "{own:?} at {p:?}, not {here:?}"
         );
     }
+}
+
+#[test]
+fn by_loops_scheme_the_triangles_of_the_file_count() {
+    let folder = folder();
+    let uniform = "--method uniform --levels 1 --limit --scheme loop";
+    for options in [uniform, "--within 1%"] {
+        let written = |encoding| {
+            let asset = tube(true).plain_asset(&folder, encoding);
+            let glb = Glb::read(&refined(&asset, "out.glb", options, ""));
+            (positions(&glb), glb.triangles(0))
+        };
+        let plain = written(Encoding::Nothing);
+        for encoding in [Encoding::Fans, Encoding::Loops] {
+            assert!(written(encoding) == plain, "{options} {encoding:?}");
+        }
+    }
+    // So they do on the way to other formats.
+    let written = |encoding| {
+        let asset = tube(true).plain_asset(&folder, encoding);
+        std::fs::read(refined(&asset, "out.obj", uniform, "")).expect("written")
+    };
+    assert!(written(Encoding::Fans) == written(Encoding::Nothing));
 }
 
 /// So small that no polygon is cut otherwise for it.
