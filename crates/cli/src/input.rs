@@ -55,7 +55,7 @@ impl Soup {
     }
 
     /// It with the triangles that a glTF document has for polygons, where these do not become quads.
-    fn as_cut(mut self) -> anyhow::Result<Self> {
+    fn with_cut_polygons(mut self) -> anyhow::Result<Self> {
         let has_polygons = self.soup.faces.iter().any(|face| face.len() > 3);
         let Some((asset, _)) = &self.asset else {
             return Ok(self);
@@ -470,7 +470,7 @@ pub(crate) fn connected(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.in_unit(read.unit).options()?;
-    let read = read.as_cut()?;
+    let read = read.with_cut_polygons()?;
     let (name, mut soup) = (read.name, read.soup);
     let faces = counted(soup.faces.len(), "face", "faces");
     progress.stage(format!("connecting {faces}"));

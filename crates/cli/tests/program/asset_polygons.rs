@@ -1,5 +1,6 @@
 //! Polygons of glTF assets: refined as those of OBJ files are, with all that the asset holds.
 
+use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +26,7 @@ fn tube(has_caps: bool) -> Cage {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for row in 0..4u32 {
         for i in 0..8u32 {
-            let (x, y) = f64::from(i).mul_add(0.7853981633974483, 0.1).sin_cos();
+            let (x, y) = (FRAC_PI_4 * f64::from(i) + 0.1).sin_cos();
             points.push(rounded([x, y, f64::from(row) + 0.2 * x]));
             if row > 0 {
                 let next = (i + 1) % 8;
@@ -193,7 +194,8 @@ fn refined(input: &Path, output: &str, options: &str, said: &str) -> PathBuf {
 fn place_of(points: &[[f64; 3]], p: [f64; 3]) -> usize {
     let is_near = |own: &[f64; 3]| (0..3).all(|i| (own[i] - p[i]).abs() < 1e-6);
     let found = points.iter().position(is_near);
-    found.unwrap_or_else(|| panic!("nothing is at {p:?}"))
+    assert!(found.is_some(), "nothing is at {p:?}");
+    found.unwrap_or_default()
 }
 
 fn positions(glb: &Glb) -> Vec<[f64; 3]> {

@@ -59,7 +59,7 @@ pub(super) fn exercise(bytes: &[u8]) {
         for part in &own.parts {
             let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
             let fans =
-                faces.flat_map(|face| face[1..].array_windows().map(|&[a, b]| [face[0], a, b]));
+                faces.flat_map(|face| face[1..].windows(2).map(|own| [face[0], own[0], own[1]]));
             let triangles: Vec<[u32; 3]> = fans.collect();
             let targets: Vec<Vec<VertexAttribute>> = (0..part.targets.len())
                 .map(|target| added(&own, target))

@@ -29,7 +29,7 @@ impl<'a> Poses<'a> {
         let Some((&first, others)) = face.split_first() else {
             return false;
         };
-        let fan = || others.array_windows().map(|&[a, b]| [first, a, b]);
+        let fan = || others.windows(2).map(|own| [first, own[0], own[1]]);
         fan().all(|own| are_on_one_line(own.map(|v| positions[v as usize])))
             && fan().any(|own| {
                 let own = own.map(|vertex| Local { part, vertex });
