@@ -58,11 +58,9 @@ fn at_vertices(
 ) -> VertexAttribute {
     let mut values = vec![0.0; width * own.soup.positions.len()];
     for table in own.attributes.iter().filter(|table| table.width == width && is_wanted(table)) {
-        for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
-            for (&v, &value) in face.iter().zip(corners) {
-                let value = &table.values[width * value as usize..][..width];
-                values[width * v as usize..][..width].copy_from_slice(value);
-            }
+        for (&v, &value) in own.soup.faces.iter().flatten().zip(&table.corners) {
+            let value = &table.values[width * value as usize..][..width];
+            values[width * v as usize..][..width].copy_from_slice(value);
         }
     }
     VertexAttribute { name: name.to_owned(), width, values, is_integer: false }
@@ -82,7 +80,8 @@ pub fn edit(bytes: &[u8]) {
         let positions = &own.soup.positions;
         for part in own.parts.iter().filter(|part| part.faces.len() <= LARGEST) {
             let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
-            let triangles: Vec<[u32; 3]> = faces.filter_map(|face| face.try_into().ok()).collect();
+            let fans = faces.flat_map(|face| (2..face.len()).map(move |i| [face[0], face[i - 1], face[i]]));
+            let triangles: Vec<[u32; 3]> = fans.collect();
             let targets: Vec<Vec<VertexAttribute>> =
                 (0..part.targets.len()).map(|target| vec![displacement(&own, target)]).collect();
             let (normals, attributes, targets) = (None, &[][..], &targets[..]);

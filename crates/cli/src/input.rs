@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use limitmesh::mesh::{BuildOptions, Channel, ChannelError, Diagnosis, MeshError, Trace, Weld};
+use limitmesh::mesh::{
+    BuildOptions, Channel, ChannelError, Diagnosis, MeshError, PolygonFaces, Trace, Weld,
+};
 use limitmesh::{Mesh, PolygonSoup, QuadControl, QuadOptions};
 use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::AssetContents;
@@ -47,11 +49,35 @@ pub(crate) struct Soup {
 }
 
 impl Soup {
-    /// Whether most of its faces are quads: it is then a cage for Catmull–Clark's scheme, as modelling programs mean it.
+    /// Whether most of its faces are quads.
     pub(crate) fn is_of_quads(&self) -> bool {
-        let quads = self.soup.faces.iter().filter(|face| face.len() == 4);
-        2 * quads.count() > self.soup.faces.len()
+        is_of_quads(&self.soup.faces)
     }
+
+    /// It with the triangles that a glTF document has for polygons, where these do not become quads.
+    fn with_cut_polygons(mut self) -> anyhow::Result<Self> {
+        let has_polygons = self.soup.faces.iter().any(|face| face.len() > 3);
+        let Some((asset, _)) = &self.asset else {
+            return Ok(self);
+        };
+        if self.quads.is_some() || !has_polygons {
+            return Ok(self);
+        }
+        let cut = asset.scene_triangles()?;
+        for own in self.soup.channels.iter_mut().chain(&mut self.normals) {
+            if let Some(cut) = cut.channels.iter().find(|cut| cut.name == own.name) {
+                (own.values, own.indices) = (cut.values.clone(), cut.indices.clone());
+            }
+        }
+        (self.soup.positions, self.soup.faces) = (cut.positions, cut.faces);
+        Ok(self)
+    }
+}
+
+/// Whether most faces are quads: they are then a cage for Catmull–Clark's scheme, as modelling programs mean it.
+pub(crate) fn is_of_quads(faces: &PolygonFaces) -> bool {
+    let quads = faces.iter().filter(|face| face.len() == 4);
+    2 * quads.count() > faces.len()
 }
 
 /// A note that a file's faces decide the scheme.
@@ -384,20 +410,49 @@ pub(crate) fn connect(
 }
 
 /// What a soup becomes.
-enum ControlMesh {
+pub(crate) enum ControlMesh {
     Triangles(Mesh, Trace),
     Quads(QuadControl),
 }
 
 impl ControlMesh {
-    fn channel(&self, soup: &PolygonSoup, channel: &Channel) -> Result<Channel, ChannelError> {
+    /// Of a soup; its polygons become quads by these rules, if there are any, or else triangles.
+    ///
+    /// # Errors
+    /// As for [`Mesh::from_soup`].
+    pub(crate) fn of(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+        quads: Option<&QuadOptions>,
+    ) -> Result<(Self, Diagnosis), MeshError> {
+        Ok(match quads {
+            None => {
+                let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, options)?;
+                (Self::Triangles(mesh, trace), diagnosis)
+            }
+            Some(rules) => {
+                let (quads, diagnosis) = QuadControl::from_soup_with(soup, options, rules)?;
+                (Self::Quads(quads), diagnosis)
+            }
+        })
+    }
+
+    /// A channel of the soup on the mesh.
+    ///
+    /// # Errors
+    /// It does not fit the soup.
+    pub(crate) fn channel(
+        &self,
+        soup: &PolygonSoup,
+        channel: &Channel,
+    ) -> Result<Channel, ChannelError> {
         match self {
             Self::Triangles(mesh, trace) => channel.on_mesh(soup, mesh, trace),
             Self::Quads(quads) => quads.channel(soup, channel),
         }
     }
 
-    fn into_parts(self) -> (Mesh, Trace) {
+    pub(crate) fn into_parts(self) -> (Mesh, Trace) {
         match self {
             Self::Triangles(mesh, trace) => (mesh, trace),
             Self::Quads(quads) => (quads.mesh, quads.trace),
@@ -415,16 +470,12 @@ pub(crate) fn connected(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.in_unit(read.unit).options()?;
+    let read = read.with_cut_polygons()?;
     let (name, mut soup) = (read.name, read.soup);
     let faces = counted(soup.faces.len(), "face", "faces");
     progress.stage(format!("connecting {faces}"));
     let start = Instant::now();
-    let built = match &read.quads {
-        None => Mesh::from_soup_traced(&soup, options)
-            .map(|(mesh, diagnosis, trace)| (ControlMesh::Triangles(mesh, trace), diagnosis)),
-        Some(rules) => QuadControl::from_soup_with(&soup, options, rules)
-            .map(|(quads, diagnosis)| (ControlMesh::Quads(quads), diagnosis)),
-    };
+    let built = ControlMesh::of(&soup, options, read.quads.as_ref());
     let (control, diagnosis) = built.map_err(|error| describe(&name, error))?;
     let on_mesh = |channel: &Channel| control.channel(&soup, channel);
     let channels = soup.channels.iter().map(on_mesh).collect::<Result<_, _>>();
@@ -436,11 +487,7 @@ pub(crate) fn connected(
         let options = BuildOptions::default().weld(weld);
         Some(Mesh::from_soup(&soup, &options).ok()?.0)
     };
-    // Quads may be halves of the polygons' edges.
-    let is_open = mesh.topology().boundary_edge_count() > 0;
-    let plain = read.quads.filter(|_| is_open);
-    let plain = plain.and_then(|_| triangles(options.weld));
-    let near = nearly_closed(plain.as_ref().unwrap_or(&mesh), options.weld, triangles);
+    let near = nearly_closed(&mesh, options.weld, triangles);
     progress.notes(near.map(|near| format!("{name}: {near}")));
     let input = Input {
         name,
@@ -471,15 +518,19 @@ pub(crate) fn connected(
 /// ten steps of single precision.
 const NEAR: f64 = 1e-6;
 
-/// Reports where open edges of a mesh would close if nearly equal positions were merged too; `build` makes it anew for that.
+/// Reports where open edges of a mesh would close if nearly equal positions were merged too; `build` makes it anew of triangles for that.
 pub(crate) fn nearly_closed(
     mesh: &Mesh,
     weld: Weld,
-    build: impl FnOnce(Weld) -> Option<Mesh>,
+    build: impl Fn(Weld) -> Option<Mesh>,
 ) -> Option<String> {
-    let open = mesh.topology().boundary_edge_count();
+    let mut open = mesh.topology().boundary_edge_count();
     if open == 0 || weld != Weld::Exact {
         return None;
+    }
+    // The edges of quads may be halves of those of polygons.
+    if mesh.topology().has_quads() {
+        open = build(weld)?.topology().boundary_edge_count();
     }
     // As it would be typed: one digit.
     let distance: f64 = format!("{:.0e}", NEAR * mesh.diagonal()).parse().ok()?;

@@ -11,7 +11,7 @@
 //! | PLY | ASCII and binary of both byte orders, triangle strips; numbers of vertices and faces, texture coordinates by corner | `f64`, binary (or ASCII), normals, colours, quality, named properties, and all of these |
 //! | STL | ASCII and binary, several solids with their names, attributes of facets; three vertices a facet, not merged | `f32` binary with attributes (or ASCII with `f64` digits and names) |
 //! | OFF | polygons; colours of vertices and faces, normals and texture coordinates of vertices | `f64` digits, normals, and colours |
-//! | glTF | what the scene shows, all instances, in its coordinates, with attributes and names of materials; Draco and meshopt | `f32`, normals: one mesh |
+//! | glTF | what the scene shows, all instances, in its coordinates, with attributes and names of materials; polygons of `FB_ngon_encoding` and `EXT_mesh_polygon`; Draco and meshopt | `f32`, normals: one mesh |
 //! | 3MF | what the build has, all items, in its coordinates | all digits: one object |
 //!
 //! A glTF [`Asset`] and a 3MF [`Package`] can be edited, too: meshes are taken out one by one and replaced, and everything else stays.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use limitmesh::mesh::{Channel, Domain, Semantic, Weld};
 use limitmesh::progress::Observer;
 use limitmesh::refine::Exact;
+use limitmesh::scheme::Family;
 use limitmesh_io::gltf::{
     CornerAttribute, Geometry, Joining, MeshSoup, Part, VertexAttribute, WithTangents,
 };
@@ -48,6 +49,7 @@ pub(crate) fn refined(
             continue;
         };
         left_out.extend(too_wide(&own));
+        left_out.extend(own.cut_polygons());
         let build = options::build(told).weld(Weld::Never).keep_windings(true);
         let control = Control::new(own.soup.clone(), &build, told, observer)?;
         let lengths = Scale {
@@ -92,6 +94,10 @@ fn soup_of(
         },
     };
     let mut own = asset.mesh(number, joining)?;
+    let scheme = options::scheme(told, &own.soup)?;
+    if !matches!(scheme.family(), Some(Family::CatmullClark)) {
+        own = asset.triangles_of(number, joining, |_| true)?;
+    }
     if own.parts.is_empty() {
         return Ok(None);
     }
@@ -126,7 +132,7 @@ fn channel(attribute: &CornerAttribute) -> Channel {
     };
     let (name, width) = (attribute.name.clone(), attribute.width);
     Channel::new(name, semantic, Domain::Corner, width)
-        .with(attribute.values.clone(), attribute.corners.concat())
+        .with(attribute.values.clone(), attribute.corners.clone())
 }
 
 /// By face, its primitive: edges stay where one meets another.

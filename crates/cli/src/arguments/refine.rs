@@ -242,7 +242,8 @@ pub(crate) struct RefineArguments {
     /// sqrt3 divides triangles by their centres and flips edges, so that no closing triangles are needed; --angle, --tolerance
     /// (estimated from samples, not proven) and --triangles are its goals, and with --method uniform each of --levels steps gives three times
     /// the triangles. It follows boundaries, corners and edges that are sharp for ever; texture coordinates and the like are left out.
-    /// Default: catmull-clark for files whose faces are quads for the most part, where no other option is for triangles alone; else loop.
+    /// Default: catmull-clark for files, and meshes of glTF assets, whose faces are quads for the most part, where no other option is for
+    /// triangles alone; else loop.
     #[arg(long, value_enum)]
     pub(crate) scheme: Option<RefiningScheme>,
 

@@ -10,6 +10,7 @@ mod asset;
 mod asset_cards;
 mod asset_choice;
 mod asset_morphs;
+mod asset_polygons;
 mod asset_skins;
 mod asset_tangents;
 mod batch;

@@ -166,12 +166,6 @@ pub(super) fn together(
 
 /// Refuses glTF assets and 3MF packages, which are edited mesh by mesh, where that cannot be.
 pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.has_quads() {
-        return usage(
-            "--scheme catmull-clark is for polygons, of which glTF assets and 3MF packages have none but triangles; OBJ, PLY and OFF \
-             files have others",
-        );
-    }
     match arguments.way() {
         Way::Exact | Way::Stepwise => Ok(()),
         Way::Sqrt3 | Way::Sqrt3Steps => usage(
@@ -184,6 +178,16 @@ pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
              3MF packages; OBJ, PLY, STL and OFF files they refine",
         ),
     }
+}
+
+/// Refuses 3MF packages for what they cannot hold.
+pub(super) fn package(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.has_quads() {
+        return usage(
+            "--scheme catmull-clark is for polygons, of which 3MF packages have none but triangles; OBJ, PLY and OFF files have others",
+        );
+    }
+    arguments.features.check_of_package()
 }
 
 /// An option that not all methods know.

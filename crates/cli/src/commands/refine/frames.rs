@@ -223,7 +223,7 @@ struct Read {
 fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<Read> {
     let (job, format) = &jobs[0];
     let mut read = input::read_for(job.input(), &job.build, &job.channels, progress)?;
-    let job = by_faces(job, &read, progress);
+    let job = by_faces(job, &read.name, read.is_of_quads(), progress);
     read.quads = job.quads();
     let soup = read.soup.clone();
     let options = job.build.in_unit(read.unit).options()?;

@@ -77,7 +77,7 @@ fn refine(
         if is_package(own) && format.is_none_or(is_package) {
             arguments.asset.refuse()?;
             check::scenes(arguments)?;
-            arguments.features.check_of_package()?;
+            check::package(arguments)?;
             let (source, arguments) = PackageSource::open(arguments, progress)?;
             return refine_all(source, &arguments, format, progress);
         }

@@ -105,7 +105,8 @@ impl Asset {
         self.scene.largest(mesh)
     }
 
-    /// The triangles of a mesh, its primitives joined into one soup; none where it has only points and lines.
+    /// The faces of a mesh, its primitives joined into one soup; none where it has only points and lines. They are triangles, and
+    /// polygons where `FB_ngon_encoding` or `EXT_mesh_polygon` has some.
     ///
     /// # Errors
     /// There is no such mesh, or an accessor breaks the rules; the flaw names it.
@@ -123,7 +124,21 @@ impl Asset {
         joining: Joining,
         is_wanted: impl Fn(usize) -> bool,
     ) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, joining, true, is_wanted)
+        self.read_mesh(mesh, joining, [true, true], is_wanted)
+            .map_err(|flaw| self.in_file(flaw))
+    }
+
+    /// [`Self::mesh_of`] with the triangles that the document cuts polygons into.
+    ///
+    /// # Errors
+    /// As for [`Self::mesh_of`].
+    pub fn triangles_of(
+        &self,
+        mesh: usize,
+        joining: Joining,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Result<MeshSoup, ReadError> {
+        self.read_mesh(mesh, joining, [true, false], is_wanted)
             .map_err(|flaw| self.in_file(flaw))
     }
 
@@ -140,7 +155,7 @@ impl Asset {
         &self,
         mesh: usize,
         joining: Joining,
-        with_attributes: bool,
+        [with_attributes, with_polygons]: [bool; 2],
         is_wanted: impl Fn(usize) -> bool,
     ) -> flaw::Result<MeshSoup> {
         let Some(at) = self.mesh_at(mesh) else {
@@ -149,8 +164,9 @@ impl Asset {
         };
         let mut primitives = Vec::new();
         for (i, primitive) in at.require("primitives")?.items()?.enumerate() {
-            let found = self.source.primitive(&primitive, i, with_attributes)?;
-            primitives.extend(found.filter(|found| !found.triangles.is_empty()));
+            let source = &self.source;
+            let found = source.primitive(&primitive, i, with_attributes, with_polygons)?;
+            primitives.extend(found.filter(|found| !found.faces.is_empty()));
         }
         parts::join(primitives, joining, is_wanted)
     }
@@ -162,7 +178,7 @@ impl Asset {
     pub fn bounding_box(&self) -> Result<Option<[[f64; 3]; 2]>, ReadError> {
         let mut corners = Vec::new();
         for mesh in 0..self.mesh_count() {
-            let own = self.read_mesh(mesh, Joining::Together, false, |_| true);
+            let own = self.read_mesh(mesh, Joining::Together, [false, true], |_| true);
             let own = own.map_err(|flaw| self.in_file(flaw))?;
             for placement in self.scene.shown(mesh) {
                 let points = self.shown(mesh, placement, &own)?;
@@ -198,15 +214,31 @@ impl Asset {
     /// # Errors
     /// As for [`Self::mesh`]; or there are more vertices than can be counted.
     pub fn scene_soup(&self) -> Result<PolygonSoup, ReadError> {
+        self.scene_of(|mesh| self.mesh(mesh, Joining::Together))
+    }
+
+    /// [`Self::scene_soup`] with the triangles that the document cuts polygons into.
+    ///
+    /// # Errors
+    /// As for [`Self::scene_soup`].
+    pub fn scene_triangles(&self) -> Result<PolygonSoup, ReadError> {
+        self.scene_of(|mesh| self.triangles_of(mesh, Joining::Together, |_| true))
+    }
+
+    fn scene_of(
+        &self,
+        read: impl Fn(usize) -> Result<MeshSoup, ReadError>,
+    ) -> Result<PolygonSoup, ReadError> {
         let mut all = PolygonSoup::default();
         let mut names = BTreeSet::new();
-        let mut channels = SceneChannels::default();
+        let (mut channels, mut as_triangles) = (SceneChannels::default(), 0);
         for mesh in 0..self.mesh_count() {
-            let own = self.mesh(mesh, Joining::Together)?;
+            let own = read(mesh)?;
             let materials = self.materials_of(mesh).map_err(|flaw| self.in_file(flaw))?;
             let attributes = own.parts.iter().flat_map(|part| &part.attributes);
             names.extend(attributes.filter_map(|name| left_out(name)));
             names.extend(own.has_targets().then_some("morph targets"));
+            as_triangles += own.as_triangles;
             for placement in self.scene.shown(mesh) {
                 let first = all.positions.len();
                 let faces = own.soup.faces.len() + all.faces.len();
@@ -230,6 +262,7 @@ impl Asset {
         let channels = channels.into_channels(&self.source);
         all.channels = channels.map_err(|flaw| self.in_file(flaw))?;
         all.left_out = names.into_iter().map(str::to_owned).collect();
+        all.left_out.extend(parts::cut_polygons(as_triangles));
         if self.source.json.get("materials").is_some() {
             all.left_out
                 .push("colours and textures of materials".to_owned());

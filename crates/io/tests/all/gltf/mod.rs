@@ -16,6 +16,7 @@ mod fresh_documents;
 mod joining;
 mod levels;
 mod mutations;
+mod polygons;
 mod scenes;
 mod stale;
 mod support;

@@ -15,11 +15,8 @@ fn added(own: &MeshSoup, target: usize) -> Vec<VertexAttribute> {
         .iter()
         .filter(|table| table.target == Some(target) && table.is_displacement());
     for table in tables {
-        for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
-            for (&v, &value) in face.iter().zip(corners) {
-                values[3 * v as usize..][..3]
-                    .copy_from_slice(&table.values[3 * value as usize..][..3]);
-            }
+        for (&v, &value) in own.soup.faces.iter().flatten().zip(&table.corners) {
+            values[3 * v as usize..][..3].copy_from_slice(&table.values[3 * value as usize..][..3]);
         }
     }
     vec![VertexAttribute {
@@ -30,7 +27,7 @@ fn added(own: &MeshSoup, target: usize) -> Vec<VertexAttribute> {
     }]
 }
 
-fn exercise(bytes: &[u8]) {
+pub(super) fn exercise(bytes: &[u8]) {
     let Ok(mut asset) = Asset::from_bytes(bytes, None) else {
         return;
     };
@@ -60,11 +57,10 @@ fn exercise(bytes: &[u8]) {
                 .all(|&v| (v as usize) < vertices)
         );
         for part in &own.parts {
-            let triangles: Vec<[u32; 3]> = part
-                .faces
-                .clone()
-                .filter_map(|face| own.soup.faces.get(face).try_into().ok())
-                .collect();
+            let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
+            let fans =
+                faces.flat_map(|face| face[1..].windows(2).map(|own| [face[0], own[0], own[1]]));
+            let triangles: Vec<[u32; 3]> = fans.collect();
             let targets: Vec<Vec<VertexAttribute>> = (0..part.targets.len())
                 .map(|target| added(&own, target))
                 .collect();

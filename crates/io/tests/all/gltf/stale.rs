@@ -52,7 +52,6 @@ fn what_names_vertices_of_a_primitive_goes_with_them() {
     for name in [
         "CESIUM_primitive_outline",
         "EXT_mesh_primitive_edge_visibility",
-        "EXT_mesh_polygon",
     ] {
         let own = json!({"extensions": {(name): {"indices": 1}, "ODD_thing": {"indices": 1}}, "extras": 7});
         let document = document(

@@ -18,17 +18,19 @@ use super::super::goals::Goals;
 use super::super::refined::Refined;
 use super::super::task::Task;
 use super::carried::Carried;
+use super::file::by_faces;
 use super::item::{Item, Source, sharpened};
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::scene;
 use super::selection::Selection;
+use super::weights::on_quads;
 use crate::arguments::{ConcaveCorners, CreasesFrom, MorphTolerance, RefineArguments, Unit, Way};
 use crate::bulk::Shown;
 use crate::commands::channels::Channels;
 use crate::creases::Hints;
 use crate::failure::usage;
 use crate::format::{counted, thousands};
-use crate::input;
+use crate::input::{self, ControlMesh};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{ChannelReport, InputReport};
@@ -48,8 +50,9 @@ pub(crate) struct AssetSource {
 
 /// A mesh as its document has it, at the scale of its largest appearance.
 pub(crate) struct AssetMesh {
+    /// Where its polygons are quads, its influences are those of the quads' vertices.
     soup: MeshSoup,
-    /// By corner of the mesh that was read, the soup's vertex.
+    /// By corner of the mesh that was read, the vertex that has its influences.
     vertices: Vec<u32>,
     scale: f64,
 }
@@ -76,6 +79,7 @@ impl AssetSource {
         let start = Instant::now();
         let asset = input::asset(arguments.input())?;
         check_channels(&asset, &name, &arguments)?;
+        check_polygons(&asset, &name, &arguments)?;
         let Some(bounds) = asset.bounding_box()? else {
             anyhow::bail!("{name}: the scene shows no triangles that could be refined");
         };
@@ -94,17 +98,21 @@ impl AssetSource {
         Ok((source, arguments))
     }
 
-    /// A mesh as it is shown, its vertices merged so.
+    /// A mesh as it is shown, its vertices merged so, with polygons or the triangles that the document has for them.
     fn as_shown(
         &self,
         mesh: usize,
         weld: Weld,
+        has_polygons: bool,
         arguments: &RefineArguments,
     ) -> Result<MeshSoup, ReadError> {
         let scale = self.asset.stretch(mesh);
         let joining = arguments.asset.joining(weld, scale);
         let is_wanted = |primitive| self.selection.has(mesh, primitive);
-        let mut own = self.asset.mesh_of(mesh, joining, is_wanted)?;
+        let mut own = match has_polygons {
+            true => self.asset.mesh_of(mesh, joining, is_wanted)?,
+            false => self.asset.triangles_of(mesh, joining, is_wanted)?,
+        };
         scene::enlarge(&mut own.soup, scale);
         Ok(own)
     }
@@ -145,18 +153,24 @@ impl Source for AssetSource {
         progress: &Progress,
     ) -> anyhow::Result<Option<(Read, Item<AssetMesh>)>> {
         let weld = arguments.build.options()?.weld;
-        let mut own = self.as_shown(number, weld, arguments)?;
+        let mut own = self.as_shown(number, weld, true, arguments)?;
         if own.parts.is_empty() {
             return Ok(None);
         }
         let name = self.asset.mesh_name(number);
+        let is_of_quads = input::is_of_quads(&own.soup.faces);
+        let arguments = &by_faces(arguments, &name, is_of_quads, progress);
+        if !arguments.has_quads() && own.soup.faces.iter().any(|face| face.len() > 3) {
+            own = self.as_shown(number, weld, false, arguments)?;
+        }
         // By glTF's rules the winding says which side is drawn.
         let options = BuildOptions::default()
             .weld(Weld::Never)
             .strict(arguments.build.strict)
             .keep_windings(true);
-        let Some((mesh, diagnosis, trace)) = scene::built(&name, &own.soup, &options, progress)?
-        else {
+        let quads = arguments.quads();
+        let built = scene::built(&name, &own.soup, &options, quads.as_ref(), progress)?;
+        let Some((control, diagnosis)) = built else {
             return Ok(None);
         };
         progress.notes(
@@ -164,12 +178,7 @@ impl Source for AssetSource {
                 .into_iter()
                 .map(|line| format!("{name}: {line}")),
         );
-        let near = input::nearly_closed(&mesh, weld, |weld| {
-            let soup = self.as_shown(number, weld, arguments).ok()?.soup;
-            Some(Mesh::from_soup(&soup, &options).ok()?.0)
-        });
-        progress.notes(near.map(|near| format!("{name}: {near}")));
-        let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &mesh, &trace);
+        let on_mesh = |channel: &Channel| control.channel(&own.soup, channel);
         let normals = own.normals.as_ref().map(on_mesh).transpose()?;
         let mut channels: Vec<Channel> = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut channels)?;
@@ -180,6 +189,22 @@ impl Source for AssetSource {
             .filter(is_kept)
             .map(on_mesh)
             .collect::<Result<_, _>>()?;
+        if let ControlMesh::Quads(quads) = &control
+            && !own.influences.is_empty()
+        {
+            own.influences = on_quads(quads, &own.soup, &own.influences)?;
+        }
+        let is_of_triangles = matches!(control, ControlMesh::Triangles(..));
+        let (mesh, trace) = control.into_parts();
+        let near = input::nearly_closed(&mesh, weld, |weld| {
+            let soup = self.as_shown(number, weld, true, arguments).ok()?.soup;
+            Some(Mesh::from_soup(&soup, &options).ok()?.0)
+        });
+        progress.notes(near.map(|near| format!("{name}: {near}")));
+        let vertices = match is_of_triangles {
+            true => trace.vertices(&own.soup),
+            false => mesh.triangles().as_flattened().to_vec(),
+        };
         let hints = Hints {
             is_tagged: false,
             normals: normals.as_ref(),
@@ -217,7 +242,7 @@ impl Source for AssetSource {
             reading: std::mem::take(&mut self.reading),
             building: Duration::ZERO,
             own: AssetMesh {
-                vertices: trace.vertices(&own.soup),
+                vertices,
                 soup: own,
                 scale,
             },
@@ -323,6 +348,24 @@ fn check_channels(asset: &Asset, name: &str, arguments: &RefineArguments) -> any
     arguments.channels.check_tolerances(name, named)
 }
 
+/// Refuses Catmull–Clark's scheme where triangles are all that there is: what a modelling program had as quads would come out otherwise.
+fn check_polygons(asset: &Asset, name: &str, arguments: &RefineArguments) -> anyhow::Result<()> {
+    if !arguments.has_quads() {
+        return Ok(());
+    }
+    let contents = asset.contents()?;
+    let primitives = contents.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut extensions = primitives.flat_map(|own| &own.extensions);
+    let is_polygons = |name: &String| ["FB_ngon_encoding", "EXT_mesh_polygon"].contains(&&name[..]);
+    match extensions.any(is_polygons) {
+        true => Ok(()),
+        false => usage(format!(
+            "--scheme catmull-clark is for polygons, of which {name} has none but triangles: no primitive has FB_ngon_encoding or \
+             EXT_mesh_polygon; OBJ, PLY and OFF files have polygons"
+        )),
+    }
+}
+
 /// Whether an attribute is to be left out.
 fn is_dropped(own: &CornerAttribute, arguments: &RefineArguments) -> bool {
     arguments
@@ -341,6 +384,8 @@ fn apart_in_words(own: &MeshSoup) -> Vec<String> {
         ..
     } = own.kept_apart;
     let mut lines = Vec::new();
+    let cut = own.cut_polygons();
+    lines.extend(cut.map(|cut| format!("left out: {cut}")));
     if own.borders > 0 {
         let edges = counted(own.borders, "edge", "edges");
         lines.push(format!(

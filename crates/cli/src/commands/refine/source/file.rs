@@ -16,7 +16,7 @@ use crate::commands::normals::Normals;
 use crate::commands::{picture, shading};
 use crate::creases::Hints;
 use crate::format::counted;
-use crate::input::{self, Input, Soup, of_quads};
+use crate::input::{self, Input, of_quads};
 use crate::progress::Progress;
 use crate::report::InputReport;
 
@@ -39,7 +39,8 @@ impl Source for FileSource {
         let kept = Normals::kept(self.format);
         let (build, channels) = (&arguments.build, &arguments.channels);
         let mut read = input::read_for(arguments.input(), build, channels, progress)?;
-        let arguments = &by_faces(arguments, &read, progress);
+        let is_of_quads = read.is_of_quads();
+        let arguments = &by_faces(arguments, &read.name, is_of_quads, progress);
         read.quads = arguments.quads();
         let input = input::connect(read, build, kept, progress)?;
         item_of(input, arguments, self.format, progress).map(Some)
@@ -65,16 +66,16 @@ impl Source for FileSource {
     }
 }
 
-/// The arguments with the scheme that a file's faces decide, where none was asked for.
+/// The arguments with the scheme that the faces of what is called `name` decide, where none was asked for.
 pub(crate) fn by_faces(
     arguments: &RefineArguments,
-    read: &Soup,
+    name: &str,
+    is_of_quads: bool,
     progress: &Progress,
 ) -> RefineArguments {
-    if arguments.asked_scheme().is_some() || !read.is_of_quads() {
+    if arguments.asked_scheme().is_some() || !is_of_quads {
         return arguments.clone();
     }
-    let name = &read.name;
     if let Some(option) = arguments.needs_triangles() {
         progress.note(format!(
             "{name}: its quads are cut into triangles, as {option} is for these: --scheme loop holds"

@@ -105,11 +105,11 @@ impl Source for PackageSource {
         let options = BuildOptions::default()
             .weld(weld)
             .strict(arguments.build.strict);
-        let Some((mesh, diagnosis, trace)) = scene::built(&name, &own.soup, &options, progress)?
-        else {
+        let built = scene::built(&name, &own.soup, &options, None, progress)?;
+        let Some((control, diagnosis)) = built else {
             return Ok(None);
         };
-        let Trace { faces, corners, .. } = trace;
+        let (mesh, Trace { faces, corners, .. }) = control.into_parts();
         let hints = Hints {
             is_tagged: false,
             normals: None,

@@ -38,7 +38,7 @@ pub(super) fn channel(attribute: &CornerAttribute) -> Channel {
         Domain::Corner,
         attribute.width,
     )
-    .with(attribute.values.clone(), attribute.corners.concat())
+    .with(attribute.values.clone(), attribute.corners.clone())
 }
 
 /// A mesh that was refined, and all that its primitives are put together from.

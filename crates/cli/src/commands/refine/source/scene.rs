@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Trace};
-use limitmesh::{Mesh, PolygonSoup};
+use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError};
+use limitmesh::{Mesh, PolygonSoup, QuadOptions};
 use limitmesh_io::channels::NORMALS;
 
 use crate::arguments::{Extent, Length, RefineArguments};
 use crate::commands::{picture, shading};
 use crate::failure::usage;
-use crate::input;
+use crate::input::{self, ControlMesh};
 use crate::progress::Progress;
 
 /// Refuses viewers, which look at one mesh.
@@ -50,7 +50,7 @@ pub(super) fn enlarge(soup: &mut PolygonSoup, scale: f64) {
     coordinates.for_each(|x| *x *= scale);
 }
 
-/// The mesh of a soup; a note says what was repaired, or why there is none and all stays as it is.
+/// The mesh of a soup, whose polygons become quads by these rules, if there are any; a note says what was repaired, or why there is none and all stays as it is.
 ///
 /// # Errors
 /// It needs a repair that is forbidden, or none helps.
@@ -58,9 +58,10 @@ pub(super) fn built(
     name: &str,
     soup: &PolygonSoup,
     options: &BuildOptions,
+    quads: Option<&QuadOptions>,
     progress: &Progress,
-) -> anyhow::Result<Option<(Mesh, Diagnosis, Trace)>> {
-    match Mesh::from_soup_traced(soup, options) {
+) -> anyhow::Result<Option<(ControlMesh, Diagnosis)>> {
+    match ControlMesh::of(soup, options, quads) {
         Err(MeshError::NoFaces { reason }) => {
             progress.note(format!("{name}: kept as it is: {reason}"));
             Ok(None)

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use anyhow::Context;
 use limitmesh::refine::Origin;
 use limitmesh::scheme::Scheme;
-use limitmesh::{FaceId, LimitSurface, Mesh};
+use limitmesh::{FaceId, LimitSurface, Mesh, PolygonSoup, QuadControl};
 
 use crate::format::{counted, number};
 
@@ -55,6 +55,52 @@ impl Weights {
     }
 }
 
+/// The lists of joints at the vertices of quads, given those at the vertices of the soup that the quads were made of; weights add up to 1.
+///
+/// # Errors
+/// A step that divides polygons has no weights.
+pub(super) fn on_quads(
+    quads: &QuadControl,
+    soup: &PolygonSoup,
+    lists: &[Vec<(u32, f64)>],
+) -> anyhow::Result<Vec<Vec<(u32, f64)>>> {
+    let shares = lists.iter().map(|list| {
+        let total: f64 = list.iter().map(|&(_, weight)| weight).sum();
+        let share = |&(joint, weight)| (joint, weight / total);
+        list.iter().map(share).collect()
+    });
+    let shares: Vec<Vec<(u32, f64)>> = shares.collect();
+    let mut found = vec![Vec::new(); quads.mesh.vertex_count()];
+    for together in all_joints(&shares).chunks(3) {
+        let stepped = quads.positions(soup, &coordinates(&shares, together));
+        let stepped = stepped.context("weights of joints")?;
+        for (list, weights) in found.iter_mut().zip(stepped) {
+            let own = together.iter().copied().zip(weights);
+            list.extend(own.filter(|&(_, weight)| weight > 0.0));
+        }
+    }
+    Ok(found)
+}
+
+/// All joints of lists, in ascending order.
+fn all_joints(lists: &[Vec<(u32, f64)>]) -> Vec<u32> {
+    let all: BTreeSet<u32> = lists.iter().flatten().map(|&(joint, _)| joint).collect();
+    all.into_iter().collect()
+}
+
+/// The weights of three joints, or fewer, as coordinates.
+fn coordinates(lists: &[Vec<(u32, f64)>], together: &[u32]) -> Vec<[f64; 3]> {
+    let mut positions = vec![[0.0; 3]; lists.len()];
+    for (position, list) in positions.iter_mut().zip(lists) {
+        for (x, joint) in position.iter_mut().zip(together) {
+            let mut list = list.iter();
+            let own = list.find(|(own, _)| own == joint);
+            *x = own.map_or(0.0, |&(_, weight)| weight);
+        }
+    }
+    positions
+}
+
 /// The weights at places of the limit surface of a mesh, given those of its vertices; `is_near` if weights count at a control vertex and
 /// on the faces around its neighbours alone.
 ///
@@ -67,8 +113,6 @@ pub(super) fn weights(
     is_near: bool,
     places: &[Origin],
 ) -> anyhow::Result<Weights> {
-    let all: BTreeSet<u32> = lists.iter().flatten().map(|&(joint, _)| joint).collect();
-    let all: Vec<u32> = all.into_iter().collect();
     // Places of one face together, whatever order vertices have.
     let mut by_face: Vec<u32> = (0..places.len() as u32).collect();
     by_face.sort_by_key(|&v| places[v as usize].face);
@@ -79,16 +123,8 @@ pub(super) fn weights(
     let mut totals = vec![0.0; places.len()];
     let mut is_clamped = vec![false; places.len()];
     let mut heights = control.clone();
-    for together in all.chunks(3) {
-        let mut positions = vec![[0.0; 3]; control.vertex_count()];
-        for (position, list) in positions.iter_mut().zip(lists) {
-            for (x, joint) in position.iter_mut().zip(together) {
-                *x = list
-                    .iter()
-                    .find(|(own, _)| own == joint)
-                    .map_or(0.0, |&(_, weight)| weight);
-            }
-        }
+    for together in all_joints(lists).chunks(3) {
+        let positions = coordinates(lists, together);
         let is_moved = moved_faces(control, &positions, is_near);
         heights = heights
             .with_positions(positions)
@@ -146,16 +182,19 @@ fn moved_faces(mesh: &Mesh, weights: &[[f64; 3]], is_near: bool) -> Vec<bool> {
     if !is_near {
         return vec![true; mesh.face_count()];
     }
+    // Both halves of a quad are one face.
+    let faces = || {
+        mesh.triangles()
+            .chunks(1 + usize::from(mesh.topology().has_quads()))
+    };
+    let any = |face: &[[u32; 3]], marks: &[bool]| face.iter().flatten().any(|&v| marks[v as usize]);
     let mut is_adjacent = vec![false; has_one.len()];
-    for corners in mesh.triangles() {
-        if corners.iter().any(|&v| has_one[v as usize]) {
-            corners.iter().for_each(|&v| is_adjacent[v as usize] = true);
-        }
+    for face in faces().filter(|face| any(face, &has_one)) {
+        let corners = face.iter().flatten();
+        corners.for_each(|&v| is_adjacent[v as usize] = true);
     }
-    mesh.triangles()
-        .iter()
-        .map(|corners| corners.iter().any(|&v| is_adjacent[v as usize]))
-        .collect()
+    let is_moved = |face: &[[u32; 3]]| std::iter::repeat_n(any(face, &is_adjacent), face.len());
+    faces().flat_map(is_moved).collect()
 }
 
 #[cfg(test)]

@@ -6,6 +6,12 @@ use std::collections::BTreeSet;
 /// Of primitives that are compressed.
 pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
 
+/// Of primitives whose triangles stand in the order of polygons.
+pub(crate) const NGONS: &str = "FB_ngon_encoding";
+
+/// Of primitives that name the loops of polygons.
+pub(crate) const LOOPS: &str = "EXT_mesh_polygon";
+
 /// Names under which meshopt compression of views is known.
 pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 

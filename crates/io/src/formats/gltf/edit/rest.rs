@@ -8,25 +8,21 @@
 use super::geometry::{Changes, PrimitiveAddress};
 use crate::flaw::Result;
 use crate::formats::gltf::document::extensions::{
-    DRACO, extension, index, items, items_mut, names_in,
+    DRACO, LOOPS, NGONS, extension, index, items, items_mut, names_in,
 };
 use crate::formats::gltf::document::text::{Edits, Members, items_of};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// The extension of primitives whose triangles stand in the order of polygons.
-const POLYGONS: &str = "FB_ngon_encoding";
-
-/// Extensions of how the triangles of a primitive are stored.
-pub(crate) const STORING: [&str; 2] = [DRACO, POLYGONS];
+/// Extensions of how the triangles and polygons of a primitive are stored.
+pub(crate) const STORING: [&str; 3] = [DRACO, NGONS, LOOPS];
 
 /// Extensions that name vertices, edges or triangles of a primitive or of a mesh by their numbers, wherever they stand.
-const NAMING: [&str; 6] = [
+const NAMING: [&str; 5] = [
     "CESIUM_mesh_vector",
     "CESIUM_primitive_outline",
     "EXT_mesh_bmesh",
     "EXT_mesh_manifold",
-    "EXT_mesh_polygon",
     "EXT_mesh_primitive_edge_visibility",
 ];
 

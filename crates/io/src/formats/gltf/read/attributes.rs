@@ -24,8 +24,8 @@ pub struct CornerAttribute {
     pub width: usize,
     /// One value after the other.
     pub values: Vec<f64>,
-    /// By face of the soup, the values at its corners.
-    pub corners: Vec<[u32; 3]>,
+    /// By corner of the soup's faces, its value.
+    pub corners: Vec<u32>,
     /// Whether the values are whole numbers that name something, so that nothing lies between them.
     pub is_integer: bool,
     /// By part, whether its primitive has the attribute; the values at corners of others are zeros.
@@ -45,7 +45,7 @@ impl CornerAttribute {
     }
 }
 
-/// The normals of the primitives `wanted` at the corners of their triangles, zero where there are none; `None` if no primitive has any.
+/// The normals of the primitives `wanted` at the corners of their faces, zero where there are none; `None` if no primitive has any.
 pub(super) fn normals(primitives: &[Primitive], wanted: &[usize]) -> Option<Channel> {
     let has_some = |&part: &usize| !primitives[part].normals.is_empty();
     if !wanted.iter().any(has_some) {
@@ -53,9 +53,7 @@ pub(super) fn normals(primitives: &[Primitive], wanted: &[usize]) -> Option<Chan
     }
     let (mut values, mut indices) = (vec![0.0; 3], Vec::new());
     for &part in wanted {
-        let Primitive {
-            normals, triangles, ..
-        } = &primitives[part];
+        let Primitive { normals, faces, .. } = &primitives[part];
         let first = (values.len() / 3) as u32;
         let is_number = |n: &[f64; 3]| n.iter().all(|x| x.is_finite());
         values.extend(
@@ -64,7 +62,7 @@ pub(super) fn normals(primitives: &[Primitive], wanted: &[usize]) -> Option<Chan
                 .flat_map(|n| if is_number(n) { *n } else { [0.0; 3] }),
         );
         let has_none = normals.is_empty();
-        let corners = triangles.as_flattened().iter();
+        let corners = faces.iter().flatten();
         indices.extend(corners.map(|v| if has_none { 0 } else { first + v }));
     }
     Some(Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3).with(values, indices))
@@ -110,22 +108,21 @@ pub(super) fn tables(
             let (primitive, own) = (&primitives[part], of(part));
             // A vertex of the file has the same value at all its corners.
             let mut of_vertex: Vec<Option<u32>> = vec![None; primitive.positions.len()];
-            for triangle in &primitive.triangles {
-                table.corners.push(triangle.map(|v| {
-                    *of_vertex[v as usize].get_or_insert_with(|| {
-                        let value = value(kind, own, width, v);
-                        let bits = |x: &f64| (x + 0.0).to_bits();
-                        let key = if is_displacement { &[] } else { &value[..] };
-                        let key = key.iter().map(bits).collect();
-                        let at = vertex(part, names[part].of_vertex[v as usize]);
-                        let next = (table.values.len() / width) as u32;
-                        let index = *known.entry((at, key)).or_insert(next);
-                        if index == next {
-                            table.values.extend(value);
-                        }
-                        index
-                    })
-                }));
+            for &v in primitive.faces.iter().flatten() {
+                let index = *of_vertex[v as usize].get_or_insert_with(|| {
+                    let value = value(kind, own, width, v);
+                    let bits = |x: &f64| (x + 0.0).to_bits();
+                    let key = if is_displacement { &[] } else { &value[..] };
+                    let key = key.iter().map(bits).collect();
+                    let at = vertex(part, names[part].of_vertex[v as usize]);
+                    let next = (table.values.len() / width) as u32;
+                    let index = *known.entry((at, key)).or_insert(next);
+                    if index == next {
+                        table.values.extend(value);
+                    }
+                    index
+                });
+                table.corners.push(index);
             }
         }
         table

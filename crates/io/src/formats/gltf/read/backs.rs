@@ -1,6 +1,6 @@
-//! Front and back of a sheet where both are triangles, such as those of leaves and cards: each is a sheet of its own.
+//! Front and back of a sheet where both are faces, such as those of leaves and cards: each is a sheet of its own.
 //!
-//! By their vertices alone the two sides are one closed surface without any inside, or the same triangles twice. So triangles are
+//! By their vertices alone the two sides are one closed surface without any inside, or the same faces twice. So faces are
 //! connected along edges, but never one with another that is folded onto it, in the same half-plane beyond their edge. A sheet that lies
 //! on another, as its vertices are all among the other's and it is folded onto that along some edge, is a back. It gets vertices of its
 //! own; nothing else changes.
@@ -11,15 +11,15 @@ use super::poses::Poses;
 use super::primitive::{Local, Primitive};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// By primitive and triangle, the number of the back that it is in; 0 where it is in none.
+/// By primitive and face, the number of the back that it is in; 0 where it is in none.
 pub(super) struct Backs {
     sheets: Vec<Vec<u32>>,
 }
 
-/// Triangles on both sides of an edge that are looked at: more meet at none that is worth it.
+/// Faces on both sides of an edge that are looked at: more meet at none that is worth it.
 const MOST_AROUND: usize = 8;
 
-/// The sine of the angle that two half-planes may make and count as one: what rounding to single precision makes of thin triangles.
+/// The sine of the angle that two half-planes may make and count as one: what rounding to single precision makes of thin faces.
 const FOLDED: f64 = 1e-4;
 
 impl Backs {
@@ -29,7 +29,7 @@ impl Backs {
         let mut sheets = Sheets::of(&faces, Poses::new(primitives));
         let backs = sheets.backs(&faces);
         let none = primitives.iter();
-        let none = none.map(|primitive| vec![0; primitive.triangles.len()]);
+        let none = none.map(|primitive| vec![0; primitive.faces.len()]);
         let mut found = Self {
             sheets: none.collect(),
         };
@@ -50,7 +50,7 @@ impl Backs {
         (0..self.sheets.len()).all(|part| self.count(part) == 0)
     }
 
-    /// How many triangles of a primitive are in backs.
+    /// How many faces of a primitive are in backs.
     pub(super) fn count(&self, part: usize) -> usize {
         let all = self.sheets[part].iter().filter(|&&sheet| sheet != 0);
         all.count()
@@ -62,39 +62,41 @@ impl Backs {
         for (primitive, sheets) in primitives.iter_mut().zip(&self.sheets) {
             let mut side = vec![None; primitive.positions.len()];
             let mut copies = HashMap::new();
-            for (triangle, &sheet) in sheets.iter().enumerate() {
-                for corner in 0..3 {
-                    let v = primitive.triangles[triangle][corner];
-                    if *side[v as usize].get_or_insert(sheet) != sheet {
-                        let copy = *copies.entry((v, sheet)).or_insert_with(|| {
-                            side.push(Some(sheet));
-                            primitive.repeat_vertex(v)
-                        });
-                        primitive.triangles[triangle][corner] = copy;
+            let faces = std::mem::take(&mut primitive.faces);
+            for (face, &sheet) in faces.iter().zip(sheets) {
+                let own = face.iter().map(|&v| {
+                    if *side[v as usize].get_or_insert(sheet) == sheet {
+                        return v;
                     }
-                }
+                    *copies.entry((v, sheet)).or_insert_with(|| {
+                        side.push(Some(sheet));
+                        primitive.repeat_vertex(v)
+                    })
+                });
+                let own: Vec<u32> = own.collect();
+                primitive.faces.push(&own);
             }
-            // A vertex of no triangle is in no back.
+            // A vertex of no face is in no back.
             sides.push(side.into_iter().map(|side| side.unwrap_or(0)).collect());
         }
         sides
     }
 }
 
-/// The triangles of all primitives, counted over all.
+/// The faces of all primitives, counted over all.
 struct Faces<'a> {
     primitives: &'a [Primitive],
     kinds: &'a ByVertex,
-    /// By primitive, the number of its first triangle; and how many there are.
+    /// By primitive, the number of its first face; and how many there are.
     first: Vec<u32>,
     count: u32,
 }
 
-/// A corner of a triangle, and the side that starts there.
-#[derive(Clone, Copy)]
+/// A corner of a face, and the side that starts there.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Corner {
     face: u32,
-    at: usize,
+    at: u32,
 }
 
 impl<'a> Faces<'a> {
@@ -102,7 +104,7 @@ impl<'a> Faces<'a> {
         let (mut first, mut count) = (Vec::with_capacity(primitives.len()), 0);
         for primitive in primitives {
             first.push(count);
-            count += primitive.triangles.len() as u32;
+            count += primitive.faces.len() as u32;
         }
         Self {
             primitives,
@@ -112,36 +114,50 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// The primitive of a triangle.
+    /// The primitive of a face.
     fn part(&self, face: u32) -> usize {
         self.first.partition_point(|&first| first <= face) - 1
     }
 
-    /// The vertex at a corner, or at one of those that follow in its triangle.
-    fn vertex(&self, Corner { face, at }: Corner, steps: usize) -> Local {
+    /// The primitive of a face, and its vertices.
+    fn face(&self, face: u32) -> (usize, &'a [u32]) {
         let part = self.part(face);
-        let triangle = self.primitives[part].triangles[(face - self.first[part]) as usize];
-        Local {
-            part,
-            vertex: triangle[(at + steps) % 3],
-        }
+        let own = (face - self.first[part]) as usize;
+        (part, self.primitives[part].faces.get(own))
     }
 
-    fn kind(&self, corner: Corner, steps: usize) -> u32 {
-        let Local { part, vertex } = self.vertex(corner, steps);
+    /// The kinds of a face's vertices.
+    fn kinds(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone {
+        let (part, vertices) = self.face(face);
+        vertices.iter().map(move |&v| self.kinds[part][v as usize])
+    }
+
+    /// The vertex at a corner, or at one of those that follow in its face.
+    fn vertex(&self, Corner { face, at }: Corner, steps: usize) -> Local {
+        let (part, vertices) = self.face(face);
+        let vertex = vertices[(at as usize + steps) % vertices.len()];
+        Local { part, vertex }
+    }
+
+    fn kind(&self, corner: Corner) -> u32 {
+        let Local { part, vertex } = self.vertex(corner, 0);
         self.kinds[part][vertex as usize]
     }
 
-    /// The kinds of the third corner beyond a side.
-    fn tip(&self, corner: Corner) -> u32 {
-        self.kind(corner, 2)
+    /// Whether two faces have vertices of the same kinds.
+    fn is_same(&self, a: Corner, b: Corner) -> bool {
+        let is_in = |own: Corner, other: Corner| {
+            let mut kinds = self.kinds(own.face);
+            kinds.all(|kind| self.kinds(other.face).any(|other| other == kind))
+        };
+        let [own, other] = [a, b].map(|corner| self.kinds(corner.face).len());
+        own == other && is_in(a, b) && is_in(b, a)
     }
 
-    /// Whether two triangles at an edge, which run oppositely along it, are on the same side of it.
+    /// Whether two faces at an edge, which run oppositely along it, are on the same side of it.
     fn is_folded(&self, a: Corner, b: Corner, poses: Poses<'_>) -> bool {
         let [from, to, tip] = [0, 1, 2].map(|steps| self.vertex(a, steps));
-        self.tip(a) == self.tip(b)
-            || poses.always([from, to, tip, self.vertex(b, 2)], is_one_half_plane)
+        self.is_same(a, b) || poses.always([from, to, tip, self.vertex(b, 2)], is_one_half_plane)
     }
 }
 
@@ -158,10 +174,10 @@ fn is_one_half_plane([a, b, c, d]: [[f64; 3]; 4]) -> bool {
     dot(m, n) > 0.0 && dot(between, between) <= FOLDED * FOLDED * dot(m, m) * dot(n, n)
 }
 
-/// Triangles that are connected along edges, but for folded ones.
+/// Faces that are connected along edges, but for folded ones.
 struct Sheets {
     of_face: Disjoint,
-    /// Triangles that are folded onto each other.
+    /// Faces that are folded onto each other.
     folds: Vec<[u32; 2]>,
 }
 
@@ -172,13 +188,13 @@ impl Sheets {
             folds: Vec::new(),
         };
         // The kinds of its ends from the lower to the higher, and the corner that it starts at.
-        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * faces.count as usize);
+        let mut sides: Vec<([u32; 2], Corner)> = Vec::new();
         for face in 0..faces.count {
-            let own = [0, 1, 2].map(|at| faces.kind(Corner { face, at }, 0));
-            for at in 0..3 {
-                let [from, to] = [own[at], own[(at + 1) % 3]];
+            let own = faces.kinds(face);
+            let nexts = own.clone().cycle().skip(1);
+            for ((from, to), at) in own.zip(nexts).zip(0..) {
                 if from != to {
-                    sides.push(([from.min(to), from.max(to)], 3 * face + at as u32));
+                    sides.push(([from.min(to), from.max(to)], Corner { face, at }));
                 }
             }
         }
@@ -188,12 +204,8 @@ impl Sheets {
         for edge in edges.filter(|edge| edge.len() <= MOST_AROUND) {
             up.clear();
             down.clear();
-            for &([low, _], side) in edge {
-                let corner = Corner {
-                    face: side / 3,
-                    at: (side % 3) as usize,
-                };
-                let is_up = faces.kind(corner, 0) == low;
+            for &([low, _], corner) in edge {
+                let is_up = faces.kind(corner) == low;
                 let same_way = if is_up { &mut up } else { &mut down };
                 sheets.add_side(faces, corner, same_way);
             }
@@ -202,18 +214,15 @@ impl Sheets {
         sheets
     }
 
-    /// Adds a side to those that run the same way, unless its triangle repeats one of theirs, with which it is then connected.
+    /// Adds a side to those that run the same way, unless its face repeats one of theirs, with which it is then connected.
     fn add_side(&mut self, faces: &Faces<'_>, corner: Corner, same_way: &mut Vec<Corner>) {
-        match same_way
-            .iter()
-            .find(|&&other| faces.tip(other) == faces.tip(corner))
-        {
+        match same_way.iter().find(|&&other| faces.is_same(other, corner)) {
             Some(other) => self.of_face.unite(other.face, corner.face),
             None => same_way.push(corner),
         }
     }
 
-    /// Connects triangles at an edge where each can go on in the other alone.
+    /// Connects faces at an edge where each can go on in the other alone.
     fn connect(&mut self, faces: &Faces<'_>, poses: Poses<'_>, [up, down]: [&[Corner]; 2]) {
         let goes_on = |&a: &Corner, &b: &Corner| !faces.is_folded(a, b, poses);
         for a in up {
@@ -244,7 +253,7 @@ impl Sheets {
         for face in 0..faces.count {
             let sheet = self.of_face.root(face);
             if wanted.contains(&sheet) {
-                let own = [0, 1, 2].map(|at| faces.kind(Corner { face, at }, 0));
+                let own = faces.kinds(face);
                 vertices.entry(sheet).or_default().extend(own);
             }
         }

@@ -224,7 +224,7 @@ fn bits(x: f64) -> u64 {
 pub(super) struct Names {
     /// A vertex of the primitive for each.
     pub(super) vertices: Vec<u32>,
-    /// The number of each vertex that a triangle uses; `u32::MAX` for others.
+    /// The number of each vertex that a face uses; `u32::MAX` for others.
     pub(super) of_vertex: Vec<u32>,
 }
 
@@ -234,7 +234,7 @@ impl Names {
         let mut of_vertex = vec![u32::MAX; primitive.positions.len()];
         let mut vertices: Vec<u32> = Vec::new();
         let mut known = HashMap::new();
-        for &v in primitive.triangles.as_flattened() {
+        for &v in primitive.faces.iter().flatten() {
             if of_vertex[v as usize] != u32::MAX {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Out of the document: the triangles of meshes, where the scene shows them, and what materials look like.
+//! Out of the document: the faces of meshes, where the scene shows them, and what materials look like.
 
 pub(crate) mod attributes;
 mod backs;
@@ -6,6 +6,7 @@ mod disjoint;
 mod kinds;
 pub(crate) mod materials;
 pub(crate) mod parts;
+mod polygons;
 mod poses;
 pub(crate) mod primitive;
 pub(crate) mod scene;

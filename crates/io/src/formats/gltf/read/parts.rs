@@ -18,7 +18,7 @@ use limitmesh::ring::INFINITELY_SHARP;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// The triangles of a primitive in a mesh's soup.
+/// The faces of a primitive in a mesh's soup.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Part {
@@ -44,16 +44,18 @@ pub struct KeptApart {
     pub by_morphs: usize,
     /// Because they belong to primitives with no edge in common there.
     pub touching: usize,
-    /// Triangles that are the back of others, with vertices of their own.
+    /// Faces that are the back of others, with vertices of their own.
     pub backs: usize,
 }
 
-/// The triangles of a mesh.
+/// The faces of a mesh.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct MeshSoup {
-    /// Positions in the mesh's own coordinates and triangles; connected by its indices alone.
+    /// Positions in the mesh's own coordinates and faces; connected by its indices alone.
     pub soup: PolygonSoup,
+    /// Polygons of which there are the triangles instead: they have holes or vertices inside, or their triangles are no fan.
+    pub as_triangles: usize,
     /// Which faces are which primitive's.
     pub parts: Vec<Part>,
     /// Texture coordinates, colours, what has a name of its own, and what morph targets add to these and to positions.
@@ -70,7 +72,18 @@ pub struct MeshSoup {
     pub influences: Vec<Vec<(u32, f64)>>,
 }
 
+/// The polygons of which there are the triangles instead, in words, if there are so many.
+pub(crate) fn cut_polygons(count: usize) -> Option<String> {
+    let words = "polygons with holes, with vertices inside or whose triangles are no fan, which are triangles instead";
+    (count > 0).then(|| format!("{words} ({count})"))
+}
+
 impl MeshSoup {
+    /// Polygons that are left out, in words, if some are.
+    pub fn cut_polygons(&self) -> Option<String> {
+        cut_polygons(self.as_triangles)
+    }
+
     /// Whether there are morph targets.
     pub fn has_targets(&self) -> bool {
         self.parts.iter().any(|part| !part.targets.is_empty())
@@ -193,15 +206,20 @@ impl<'a> Joiner<'a> {
         }
         let start = self.found.soup.faces.len();
         let poses = Poses::new(self.primitives);
-        for &triangle in &primitive.triangles {
-            if poses.opens(part, triangle) {
+        let mut corners = Vec::new();
+        for face in primitive.faces.iter() {
+            if poses.opens(part, face) {
                 let face = self.found.soup.faces.len() as u32;
                 self.found.soup.opening.push(face);
             }
-            let names = triangle.map(|v| self.names[part].of_vertex[v as usize]);
-            let corners = names.map(|name| self.vertex(part, name));
+            corners.clear();
+            for &v in face {
+                let name = self.names[part].of_vertex[v as usize];
+                corners.push(self.vertex(part, name));
+            }
             self.found.soup.faces.push(&corners);
         }
+        self.found.as_triangles += primitive.as_triangles;
         let targets = primitive.targets.iter().map(|target| target.names.clone());
         self.found.parts.push(Part {
             primitive: primitive.index,
@@ -257,13 +275,14 @@ impl<'a> Joiner<'a> {
     }
 }
 
-/// Edges of one triangle alone, the way it runs along them.
+/// Edges of one face alone, the way it runs along them.
 fn open_edges(primitive: &Primitive, names: &Names) -> Vec<[u32; 2]> {
     let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
-    let mut all = Vec::with_capacity(3 * primitive.triangles.len());
-    for triangle in &primitive.triangles {
-        let [a, b, c] = triangle.map(|v| names.of_vertex[v as usize]);
-        for [from, to] in [[a, b], [b, c], [c, a]] {
+    let mut all = Vec::with_capacity(primitive.faces.corner_count());
+    for face in primitive.faces.iter() {
+        let nexts = face.iter().cycle().skip(1);
+        for ends in face.iter().zip(nexts) {
+            let [from, to] = [ends.0, ends.1].map(|&v| names.of_vertex[v as usize]);
             *uses.entry([from.min(to), from.max(to)]).or_default() += 1;
             all.push([from, to]);
         }

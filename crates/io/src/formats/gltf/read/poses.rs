@@ -1,6 +1,6 @@
 //! Where morph targets and joints take the vertices of a mesh.
 //!
-//! A property at rest, such as a triangle without area, need not hold where its vertices are moved apart. So it is tested in some
+//! A property at rest, such as a face without area, need not hold where its vertices are moved apart. So it is tested in some
 //! poses: at rest, at weight 1 of each morph target, and with all targets together at weights that nobody would choose, where it
 //! holds by chance only. What joints do to vertices with the same joints and weights is one affine map; of others it is not known.
 
@@ -23,14 +23,18 @@ impl<'a> Poses<'a> {
         }
     }
 
-    /// Whether a triangle of a primitive has no area at rest, and one elsewhere.
-    pub(super) fn opens(&self, part: usize, triangle: [u32; 3]) -> bool {
+    /// Whether a face of a primitive has no area at rest, and one elsewhere.
+    pub(super) fn opens(&self, part: usize, face: &[u32]) -> bool {
         let positions = &self.primitives[part].positions;
-        are_on_one_line(triangle.map(|v| positions[v as usize]))
-            && !self.always(
-                triangle.map(|vertex| Local { part, vertex }),
-                are_on_one_line,
-            )
+        let Some((&first, others)) = face.split_first() else {
+            return false;
+        };
+        let fan = || others.windows(2).map(|own| [first, own[0], own[1]]);
+        fan().all(|own| are_on_one_line(own.map(|v| positions[v as usize])))
+            && fan().any(|own| {
+                let own = own.map(|vertex| Local { part, vertex });
+                !self.always(own, are_on_one_line)
+            })
     }
 
     /// Whether something holds of vertices in all poses; not where joints move them differently.

@@ -1,14 +1,17 @@
-//! Primitives: positions, triangles and what moves vertices apart, out of the document.
+//! Primitives: positions, faces and what moves vertices apart, out of the document.
 //!
+//! Faces are triangles, and polygons where an extension has some (`polygons`).
 //! Strips and fans become triangles as the specification winds them: triangle i of a strip is (i, i + 1 + i mod 2,
 //! i + 2 − i mod 2), of a fan (i + 1, i + 2, 0).
 
+use super::polygons::Polygons;
 use crate::flaw::{Flaw, Result};
 use crate::formats::gltf::document::codecs::{self, Compressed};
-use crate::formats::gltf::document::extensions::DRACO;
+use crate::formats::gltf::document::extensions::{DRACO, LOOPS};
 use crate::formats::gltf::document::json::At;
 use crate::formats::gltf::document::numbers::Numbers;
 use crate::formats::gltf::document::source::Source;
+use limitmesh::mesh::PolygonFaces;
 use std::collections::BTreeMap;
 
 /// A vertex of a primitive.
@@ -21,13 +24,16 @@ pub(crate) struct Local {
 /// A joint that moves a vertex, and its weight, which is above 0.
 type Influence = (u32, f64);
 
-/// Triangles of one material.
+/// Faces of one material.
 #[derive(Clone, Debug)]
 pub(crate) struct Primitive {
     /// Its number among the mesh's.
     pub(crate) index: usize,
     pub(crate) positions: Vec<[f64; 3]>,
-    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Its polygons, or the triangles that these are where there are no others.
+    pub(crate) faces: PolygonFaces,
+    /// Polygons of which there are the triangles instead.
+    pub(crate) as_triangles: usize,
     /// Its morph targets.
     pub(crate) targets: Vec<Target>,
     /// By vertex, the joints that move it with their weights above 0, by joint; empty without a skin.
@@ -84,6 +90,8 @@ impl Primitive {
 pub(crate) enum Mode {
     /// Points and lines, which are left as they are.
     Other,
+    /// Line loops around polygons.
+    Loops,
     Triangles,
     Strip,
     Fan,
@@ -95,6 +103,7 @@ pub(crate) fn mode(primitive: &At<'_>) -> Result<Mode> {
         return Ok(Mode::Triangles);
     };
     match mode.count()? {
+        2 if primitive.path(&["extensions", LOOPS]).is_some() => Ok(Mode::Loops),
         0..=3 => Ok(Mode::Other),
         4 => Ok(Mode::Triangles),
         5 => Ok(Mode::Strip),
@@ -104,12 +113,14 @@ pub(crate) fn mode(primitive: &At<'_>) -> Result<Mode> {
 }
 
 impl Source {
-    /// The primitive at `at`, number `index` of its mesh, perhaps with its attributes; `None` if it has no triangles to be.
+    /// The primitive at `at`, number `index` of its mesh, perhaps with its attributes, and its polygons as polygons or as the triangles that
+    /// the document cuts them into; `None` if it has no triangles to be.
     pub(crate) fn primitive(
         &self,
         at: &At<'_>,
         index: usize,
         with_attributes: bool,
+        with_polygons: bool,
     ) -> Result<Option<Primitive>> {
         let mode = mode(at)?;
         let attributes = at.require("attributes")?;
@@ -173,21 +184,29 @@ impl Source {
                 with_attributes.then_some(&mut others),
             )?);
         }
-        let corners = match (compressed, at.get("indices")) {
-            (Some(stream), _) => checked(stream.indices, count, at)?,
-            (None, Some(indices)) => checked(self.integers(&indices)?, count, &indices)?,
-            // A primitive without indices has at most as many corners as it has positions.
-            (None, None) => (0..count as u32).collect(),
+        let is_compressed = compressed.is_some();
+        let triangles = || {
+            let corners = match (compressed, at.get("indices")) {
+                (Some(stream), _) => checked(stream.indices, count, at)?,
+                (None, Some(indices)) => checked(self.integers(&indices)?, count, &indices)?,
+                // A primitive without indices has at most as many corners as it has positions.
+                (None, None) => (0..count as u32).collect(),
+            };
+            Ok(triangles(&corners, mode))
         };
-        let (triangles, attributes) = (triangles(&corners, mode), others);
+        let Polygons {
+            faces,
+            as_triangles,
+        } = self.polygons(at, mode, count, with_polygons, is_compressed, triangles)?;
         Ok(Some(Primitive {
             index,
             positions,
-            triangles,
+            faces,
+            as_triangles,
             targets,
             influences,
             normals,
-            attributes,
+            attributes: others,
             names,
         }))
     }
@@ -248,7 +267,8 @@ fn is_carried(name: &str) -> bool {
     !["POSITION", "NORMAL", "TANGENT", "JOINTS", "WEIGHTS"].contains(&kind)
 }
 
-fn checked(corners: Vec<u32>, count: usize, at: &At<'_>) -> Result<Vec<u32>> {
+/// The indices of an accessor, if all are below the number of vertices.
+pub(super) fn checked(corners: Vec<u32>, count: usize, at: &At<'_>) -> Result<Vec<u32>> {
     let Some(i) = corners.iter().position(|&v| v as usize >= count) else {
         return Ok(corners);
     };
@@ -261,7 +281,7 @@ fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     // Strips repeat vertices on purpose, to go on elsewhere.
     let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     match mode {
-        Mode::Other => Vec::new(),
+        Mode::Other | Mode::Loops => Vec::new(),
         Mode::Triangles => corners.as_chunks::<3>().0.to_vec(),
         Mode::Strip => {
             let turned = |i: usize| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]];

@@ -10,7 +10,7 @@ use crate::channels::{COLOUR, MATERIAL, NORMALS, TEXTURE};
 use crate::flaw::Result;
 use crate::formats::gltf::document::source::Source;
 use crate::reading::named_faces;
-use limitmesh::mesh::{Channel, Domain, Semantic};
+use limitmesh::mesh::{Channel, Domain, PolygonFaces, Semantic};
 
 /// Channels of a scene, as far as they were gathered.
 #[derive(Debug, Default)]
@@ -47,12 +47,13 @@ impl SceneChannels {
             add_faces(
                 channel,
                 first,
-                attribute.corners.iter().copied(),
+                &attribute.corners,
+                &mesh.soup.faces,
                 is_mirrored,
             );
         }
         self.add_normals(mesh, placement, is_mirrored);
-        self.corners += 3 * mesh.soup.faces.len();
+        self.corners += mesh.soup.faces.corner_count();
         for channel in &mut self.channels {
             pad(channel, self.corners);
         }
@@ -78,8 +79,8 @@ impl SceneChannels {
         let channel = self.channel(NORMALS, Semantic::Other, 3);
         let first = channel.value_count() as u32;
         channel.values.extend(values);
-        let faces = own.indices.as_chunks::<3>().0.iter().copied();
-        add_faces(channel, first, faces, is_mirrored);
+        let faces = &mesh.soup.faces;
+        add_faces(channel, first, &own.indices, faces, is_mirrored);
     }
 
     /// The scene's channel of a name, with values at all corners so far.
@@ -132,14 +133,18 @@ impl SceneChannels {
 fn add_faces(
     channel: &mut Channel,
     first: u32,
-    faces: impl Iterator<Item = [u32; 3]>,
+    corners: &[u32],
+    faces: &PolygonFaces,
     is_mirrored: bool,
 ) {
-    for mut face in faces {
-        if is_mirrored {
-            face.reverse();
-        }
-        channel.indices.extend(face.map(|index| first + index));
+    let start = channel.indices.len();
+    channel
+        .indices
+        .extend(corners.iter().map(|own| first + own));
+    let mut left = &mut channel.indices[start..];
+    for face in faces.iter().filter(|_| is_mirrored) {
+        let own = left.split_off_mut(..face.len());
+        own.into_iter().for_each(<[u32]>::reverse);
     }
 }
 
