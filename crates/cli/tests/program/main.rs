@@ -44,6 +44,7 @@ mod restricted;
 mod same_bytes;
 mod shading;
 mod shared_models;
+mod shipped;
 mod size;
 mod sqrt3;
 mod streams;
