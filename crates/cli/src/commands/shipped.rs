@@ -26,7 +26,8 @@ pub(crate) fn man(arguments: &ManArguments) -> anyhow::Result<Outcome> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
     for command in std::iter::once(&program).chain(commands(&program)) {
-        let man = Man::new(command.clone());
+        let man =
+            Man::new(command.clone()).source(concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
         let mut page = Vec::new();
         man.render(&mut page)?;
         output::write_file(&arguments.folder.join(man.get_filename()), &page)?;
