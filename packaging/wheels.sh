@@ -6,8 +6,9 @@
 # Writes to target/packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-# No folder of this machine is named in it.
+# As in archives.sh.
 export RUSTFLAGS="--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
+flags="-Cllvm-args=--inline-threshold=10 --inlinehint-threshold=25"
 
 # maturin takes along the licences that it finds there.
 trap 'rm -f crates/python/LICENSE-*' EXIT
@@ -20,5 +21,6 @@ for target; do
     *-linux-musl) linked=(--zig --compatibility musllinux_1_2) ;;
     *) linked=() ;;
   esac
-  maturin build --profile dist --locked --target "$target" ${linked[@]+"${linked[@]}"} --manifest-path crates/python/Cargo.toml --out target/packages
+  maturin build --profile dist --locked --target "$target" ${linked[@]+"${linked[@]}"} --manifest-path crates/python/Cargo.toml \
+    --out target/packages -- "$flags"
 done
