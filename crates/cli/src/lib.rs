@@ -123,5 +123,7 @@ fn run(arguments: &Arguments, again: &[OsString], progress: &Progress) -> anyhow
         Command::Models(arguments) => commands::models::run(arguments),
         Command::Batch(own) => commands::batch::run(own, again, arguments.global.threads, progress),
         Command::BatchJob(arguments) => commands::batch_job::run(arguments, progress),
+        Command::Completions(arguments) => commands::shipped::completions(arguments),
+        Command::Man(arguments) => commands::shipped::man(arguments),
     }
 }

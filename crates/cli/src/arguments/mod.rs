@@ -19,6 +19,7 @@ mod refine;
 mod render;
 mod reproduce;
 mod shared;
+mod shipped;
 mod tolerances;
 mod values;
 mod view;
@@ -47,6 +48,7 @@ pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{
     BuildArguments, OverwriteArguments, RefiningScheme, SMOOTH_TRIANGLES, SchemeName,
 };
+pub(crate) use shipped::{CompletionsArguments, ManArguments};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, MAX_STEPS, Shard, Size};
 pub(crate) use view::ViewArguments;
@@ -127,4 +129,8 @@ pub(crate) enum Command {
     Batch(BatchArguments),
     #[command(hide = true)]
     BatchJob(BatchJobArguments),
+    #[command(hide = true)]
+    Completions(CompletionsArguments),
+    #[command(hide = true)]
+    Man(ManArguments),
 }

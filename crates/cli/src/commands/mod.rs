@@ -22,4 +22,5 @@ pub(crate) mod refine;
 pub(crate) mod render;
 pub(crate) mod reproduce;
 mod shading;
+pub(crate) mod shipped;
 pub(crate) mod view;

@@ -44,6 +44,7 @@ mod reproduce;
 mod restricted;
 mod shading;
 mod shared_models;
+mod shipped;
 mod size;
 mod sqrt3;
 mod streams;
