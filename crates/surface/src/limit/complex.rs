@@ -94,10 +94,20 @@ impl Div<f64> for Complex {
     }
 }
 
+/// By R. L. Smith, *Algorithm 116: Complex division*, 1962: real numbers are divided with one rounding.
 impl Div for Complex {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        self * other.conj() / other.modulus_squared()
+        let Self { re: a, im: b } = self;
+        if other.re.abs() >= other.im.abs() {
+            let ratio = other.im / other.re;
+            let divisor = other.re + other.im * ratio;
+            Self::new((a + b * ratio) / divisor, (b - a * ratio) / divisor)
+        } else {
+            let ratio = other.re / other.im;
+            let divisor = other.re * ratio + other.im;
+            Self::new((a * ratio + b) / divisor, (b * ratio - a) / divisor)
+        }
     }
 }
 

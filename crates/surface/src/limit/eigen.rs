@@ -35,6 +35,12 @@ pub(super) fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex>> {
             (left, steps) = (first, 0);
             continue;
         }
+        if first + 2 == left {
+            let [upper, lower] = eigenvalues_of_two(&h, left);
+            (h[(first, first)], h[(left - 1, left - 1)]) = (upper, lower);
+            (left, steps) = (first, 0);
+            continue;
+        }
         steps += 1;
         if steps > STEPS {
             return None;
@@ -42,7 +48,7 @@ pub(super) fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex>> {
         let shift = if steps % STEPS_TO_TURN == 0 {
             h[(left - 1, left - 1)] + size(h[(left - 1, left - 2)]).into()
         } else {
-            wilkinson_shift(&h, left)
+            eigenvalues_of_two(&h, left)[1]
         };
         qr_step(&mut h, first, left, shift);
     }
@@ -81,8 +87,9 @@ fn hessenberg_form(mut matrix: Matrix) -> Matrix {
     matrix
 }
 
-/// Of the last 2×2 block of the first `left` rows, the eigenvalue next to its last entry.
-fn wilkinson_shift(h: &Matrix, left: usize) -> Complex {
+/// Of the last 2×2 block of the first `left` rows, both eigenvalues, that next to its last entry (Wilkinson's shift) last. Simple numbers come
+/// out exactly.
+fn eigenvalues_of_two(h: &Matrix, left: usize) -> [Complex; 2] {
     let (i, j) = (left - 2, left - 1);
     let last = h[(j, j)];
     let half = (h[(i, i)] - last) / 2.0;
@@ -95,10 +102,9 @@ fn wilkinson_shift(h: &Matrix, left: usize) -> Complex {
         minus
     };
     if greater == Complex::ZERO {
-        last
-    } else {
-        last - product / greater
+        return [last, last];
     }
+    [last + greater, last - product / greater]
 }
 
 /// H − σ = QR, then RQ + σ, on the rows and columns from `first` to `end`, by Givens rotations.

@@ -119,8 +119,8 @@ impl IndexMut<(usize, usize)> for Matrix {
     }
 }
 
-/// A square linear system A·x = b after elimination with complete pivoting (Gauss, Jordan): `rank` unknowns follow from the others. Complete
-/// pivoting shows the rank, however small the entries of the rows that are left.
+/// A square linear system A·x = b after Gaussian elimination with complete pivoting: `rank` unknowns follow from the others. Complete pivoting
+/// shows the rank, however small the entries of the rows that are left.
 pub(super) struct Reduced {
     matrix: Matrix,
     right: Vec<Complex>,
@@ -144,7 +144,7 @@ impl Reduced {
         system
     }
 
-    /// Makes the next pivot 1 and the rest of its column 0; false where there is none greater than `cut`.
+    /// Makes what is below the next pivot 0; false where there is none greater than `cut`.
     fn eliminate(&mut self, cut: f64) -> bool {
         let (n, step) = (self.matrix.rows, self.rank);
         let (mut greatest, mut place) = (cut * cut, None);
@@ -164,12 +164,8 @@ impl Reduced {
         self.matrix.swap_columns(step, column);
         self.unknowns.swap(step, column);
         let pivot = self.matrix[(step, step)];
-        for column in step..n {
-            self.matrix[(step, column)] = self.matrix[(step, column)] / pivot;
-        }
-        self.right[step] = self.right[step] / pivot;
-        for row in (0..n).filter(|&row| row != step) {
-            let factor = -self.matrix[(row, step)];
+        for row in step + 1..n {
+            let factor = -(self.matrix[(row, step)] / pivot);
             if factor != Complex::ZERO {
                 self.matrix.add_row(row, step, factor, step);
                 let product = factor * self.right[step];
@@ -186,15 +182,17 @@ impl Reduced {
         for column in self.rank..n {
             solution[self.unknowns[column]] = free(column).into();
         }
-        for row in 0..self.rank {
+        for row in (0..self.rank).rev() {
             let start = if right {
                 self.right[row]
             } else {
                 Complex::ZERO
             };
-            solution[self.unknowns[row]] = (self.rank..n).fold(start, |sum, column| {
-                sum - self.matrix[(row, column)] * free(column)
+            let sum = (row + 1..n).rev().fold(start, |sum, column| {
+                sum - self.matrix[(row, column)] * solution[self.unknowns[column]]
             });
+            // Adding 0 takes away the sign of zeros.
+            solution[self.unknowns[row]] = sum / self.matrix[(row, row)] + Complex::ZERO;
         }
         solution
     }
