@@ -40,10 +40,9 @@ fn each_command_has_a_page_of_the_manual() {
     let help = String::from_utf8(help.stdout).expect("UTF-8");
     let listed = help.split_once("Commands:\n").expect("a list").1.lines();
     let listed = listed.take_while(|line| !line.trim().is_empty());
-    // Further lines of a description begin farther to the right.
-    let listed = listed.filter(|line| !line.starts_with("   "));
-    let listed = listed.filter_map(|line| line.split_whitespace().next());
-    for name in listed.filter(|&name| name != "help") {
+    // Deeper lines go on with what a command does.
+    let listed = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    for name in listed.filter(|&name| !["", "help"].contains(&name)) {
         assert!(
             pages.contains(&format!("limitmesh-{name}.1")),
             "{name} in {pages:?}"
