@@ -194,7 +194,10 @@ fn choose(
     if from_boundary && draws_others_along(differences, modes, pair) {
         return Some((pair, TangentPlane::Surface, fast));
     }
-    if strict(slow.min(fast), greatest_other) || outlasts {
+    if outlasts {
+        return Some((pair, TangentPlane::Surface, fast));
+    }
+    if strict(slow.min(fast), greatest_other) {
         return Some((pair, TangentPlane::Surface, next));
     }
     // The boundary's own tangent and the pattern across it are still the first of their kinds: the faces along
