@@ -25,7 +25,7 @@ PLATFORMS = {
 
 
 def platforms_of(wheel: pathlib.Path) -> list[str]:
-    """Blender's names of the platforms that a wheel's name tells of."""
+    """Blender's names of the platforms that a wheel's name has."""
     tag = wheel.stem.split("-")[-1].replace("universal2", "x86_64_arm64")
     found = [name for (system, machine), name in PLATFORMS.items() if system in tag and machine in tag]
     if not found:

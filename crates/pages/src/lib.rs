@@ -120,7 +120,7 @@ fn ask<T>(array: &mut Vec<T>) {
 
 #[cfg(any(target_os = "linux", target_os = "android"))]
 mod system {
-    /// No processor has larger small pages.
+    /// The largest small page of 64-bit processors that Linux commonly runs on; where pages are larger the advice is refused.
     const PAGE: usize = 1 << 16;
 
     /// Asks for large pages for `bytes` bytes from `start` on, less what does not fill a small page.

@@ -1,4 +1,4 @@
-"""What a mesh of Blender carries beside its shape: attributes, vertex groups and shape keys, from the control mesh to the refined one."""
+"""What a mesh of Blender carries in addition to its shape: attributes, vertex groups and shape keys, from the control mesh to the refined one."""
 
 from __future__ import annotations
 

@@ -88,8 +88,7 @@ pub enum FrontError {
 }
 
 error_messages! {
-    FrontError {
-    }
+    FrontError {}
     from { Limit(LimitError), Demand(CriterionError), Mesh(MeshError), Cancelled(Cancelled) }
 }
 

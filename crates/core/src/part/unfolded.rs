@@ -48,8 +48,7 @@ pub enum UnfoldedError {
 }
 
 error_messages! {
-    UnfoldedError {
-    }
+    UnfoldedError {}
     from { Interpolate(InterpolateError), Refine(RefineError) }
 }
 

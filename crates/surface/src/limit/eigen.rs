@@ -26,8 +26,8 @@ pub(super) fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex>> {
     let (mut left, mut steps) = (n, 0);
     while left > 0 {
         let is_split = |&row: &usize| {
-            let beside = size(h[(row, row)]) + size(h[(row - 1, row - 1)]);
-            let scale = if beside > 0.0 { beside } else { norm };
+            let diagonal = size(h[(row, row)]) + size(h[(row - 1, row - 1)]);
+            let scale = if diagonal > 0.0 { diagonal } else { norm };
             size(h[(row, row - 1)]) <= f64::EPSILON * scale
         };
         let first = (1..left).rev().find(is_split).unwrap_or(0);
@@ -354,7 +354,7 @@ mod tests {
         }
     }
 
-    /// Jordan blocks of 1/4 beside other eigenvalues, in other coordinates of whole numbers: one eigenvalue, one left eigenvector.
+    /// Jordan blocks of 1/4 among other eigenvalues, in other coordinates of whole numbers: one eigenvalue, one left eigenvector.
     #[test]
     fn jordan_blocks_are_joined() {
         for size in [2, 3] {

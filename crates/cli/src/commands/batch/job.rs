@@ -7,10 +7,19 @@ use std::path::Path;
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
-use super::remote::is_address;
 use crate::arguments::{Arguments, Viewer};
 use crate::file_identity::FileIdentity;
 use crate::output::is_folder;
+
+/// Whether a name is an address, with a scheme of at least two letters: `C://` is a drive.
+pub(super) fn is_address(name: &str) -> bool {
+    name.split_once("://").is_some_and(|(scheme, _)| {
+        scheme.len() > 1
+            && scheme
+                .bytes()
+                .all(|byte| byte.is_ascii_alphanumeric() || b"+.-:".contains(&byte))
+    })
+}
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
@@ -308,6 +317,23 @@ impl Claims {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn addresses_have_schemes() {
+        for name in ["s3://b/a.stl", "memory://a.ply", "simplecache::s3://b/a"] {
+            assert!(is_address(name), "{name}");
+        }
+        for name in [
+            "a.stl",
+            "/a//b.stl",
+            "C://a.stl",
+            "://a",
+            "a b://c",
+            "builtin:cup",
+        ] {
+            assert!(!is_address(name), "{name}");
+        }
+    }
 
     fn job(line: &str) -> Result<Job, String> {
         Reader::new(false).job(line.as_bytes())

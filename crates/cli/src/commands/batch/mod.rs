@@ -35,11 +35,11 @@ use crate::input;
 use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
-use job::{Claims, Job, Reader};
+use job::{Claims, Job, Reader, is_address};
 pub(super) use process::Verdict;
 use process::{Ended, Limits, Starter};
+use remote::Copied;
 pub use remote::RemoteFiles;
-use remote::{Copied, is_address};
 use results::{EarlierResults, Place, Results};
 #[cfg(test)]
 pub(crate) use status::Line as BatchLine;

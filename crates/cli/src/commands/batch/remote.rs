@@ -6,11 +6,11 @@ use std::path::Path;
 use anyhow::Context;
 use tempfile::TempDir;
 
-use super::job::Job;
+use super::job::{Job, is_address};
 
 /// Files that only the caller of a batch can reach. Called from several threads at once.
 pub trait RemoteFiles: Sync {
-    /// Copies the file at an address, and those beside it that it names, into the folder of `to`.
+    /// Copies the file at an address, and those that it names, into the folder of `to`.
     ///
     /// # Errors
     /// It cannot, in words.
@@ -24,16 +24,6 @@ pub trait RemoteFiles: Sync {
 
     /// Bytes of the file at an address, if there is one.
     fn size(&self, address: &str) -> Option<u64>;
-}
-
-/// Whether a name is an address, with a scheme of at least two letters: `C://` is a drive.
-pub(super) fn is_address(name: &str) -> bool {
-    name.split_once("://").is_some_and(|(scheme, _)| {
-        scheme.len() > 1
-            && scheme
-                .bytes()
-                .all(|byte| byte.is_ascii_alphanumeric() || b"+.-:".contains(&byte))
-    })
 }
 
 /// A job with its remote files in a temporary folder.
@@ -163,26 +153,4 @@ fn names_below(folder: &Path) -> std::io::Result<Vec<String>> {
     }
     names.sort();
     Ok(names)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn addresses_have_schemes() {
-        for name in ["s3://b/a.stl", "memory://a.ply", "simplecache::s3://b/a"] {
-            assert!(is_address(name), "{name}");
-        }
-        for name in [
-            "a.stl",
-            "/a//b.stl",
-            "C://a.stl",
-            "://a",
-            "a b://c",
-            "builtin:cup",
-        ] {
-            assert!(!is_address(name), "{name}");
-        }
-    }
 }

@@ -5,6 +5,7 @@ mod backs;
 mod disjoint;
 mod kinds;
 pub(crate) mod materials;
+mod mode;
 pub(crate) mod parts;
 mod polygons;
 mod poses;

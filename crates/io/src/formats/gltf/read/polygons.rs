@@ -7,7 +7,7 @@
 //! Sources: <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/FB_ngon_encoding>,
 //! <https://github.com/KhronosGroup/glTF/pull/2570>.
 
-use super::primitive::{Mode, checked};
+use super::mode::{Mode, checked};
 use crate::flaw::{Flaw, Result};
 use crate::formats::gltf::document::extensions::{LOOPS, NGONS};
 use crate::formats::gltf::document::json::At;

@@ -4,10 +4,11 @@
 //! Strips and fans become triangles as the specification winds them: triangle i of a strip is (i, i + 1 + i mod 2,
 //! i + 2 − i mod 2), of a fan (i + 1, i + 2, 0).
 
+use super::mode::{Mode, checked, mode};
 use super::polygons::Polygons;
-use crate::flaw::{Flaw, Result};
+use crate::flaw::Result;
 use crate::formats::gltf::document::codecs::{self, Compressed};
-use crate::formats::gltf::document::extensions::{DRACO, LOOPS};
+use crate::formats::gltf::document::extensions::DRACO;
 use crate::formats::gltf::document::json::At;
 use crate::formats::gltf::document::numbers::Numbers;
 use crate::formats::gltf::document::source::Source;
@@ -82,33 +83,6 @@ impl Primitive {
                 .extend_from_within(start..start + numbers.components);
         }
         new
-    }
-}
-
-/// The parts of a primitive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mode {
-    /// Points and lines, which are left as they are.
-    Other,
-    /// Line loops around polygons.
-    Loops,
-    Triangles,
-    Strip,
-    Fan,
-}
-
-/// The mode of a primitive.
-pub(crate) fn mode(primitive: &At<'_>) -> Result<Mode> {
-    let Some(mode) = primitive.get("mode") else {
-        return Ok(Mode::Triangles);
-    };
-    match mode.count()? {
-        2 if primitive.path(&["extensions", LOOPS]).is_some() => Ok(Mode::Loops),
-        0..=3 => Ok(Mode::Other),
-        4 => Ok(Mode::Triangles),
-        5 => Ok(Mode::Strip),
-        6 => Ok(Mode::Fan),
-        _ => Err(mode.unexpected("0 to 6")),
     }
 }
 
@@ -265,16 +239,6 @@ impl Source {
 fn is_carried(name: &str) -> bool {
     let kind = name.split_once('_').map_or(name, |(kind, _)| kind);
     !["POSITION", "NORMAL", "TANGENT", "JOINTS", "WEIGHTS"].contains(&kind)
-}
-
-/// The indices of an accessor, if all are below the number of vertices.
-pub(super) fn checked(corners: Vec<u32>, count: usize, at: &At<'_>) -> Result<Vec<u32>> {
-    let Some(i) = corners.iter().position(|&v| v as usize >= count) else {
-        return Ok(corners);
-    };
-    let found = format!("{} in element {i}", corners[i]);
-    let expected = format!("indices below {count} (the number of vertices)");
-    Err(Flaw::new(at.place(), found, expected))
 }
 
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
