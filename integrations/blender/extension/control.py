@@ -109,3 +109,12 @@ def subdivision_of(an_object: bpy.types.Object) -> bpy.types.Modifier | None:
 def scale_of(an_object: bpy.types.Object) -> Floats:
     """The linear part of an object's transform."""
     return np.array(an_object.matrix_world, dtype=np.float64)[:3, :3]
+
+
+def is_ready(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Whether the active object is a mesh in Object Mode; else the operator shows what it needs."""
+    an_object = context.active_object
+    if an_object is None or an_object.type != "MESH" or an_object.mode != "OBJECT":
+        operator.poll_message_set("Needs an active mesh object in Object Mode")
+        return False
+    return True

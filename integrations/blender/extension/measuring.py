@@ -10,7 +10,7 @@ import bpy
 import limitmesh
 import numpy as np
 
-from .control import Control, Floats, Integers, control_of, read, scale_of, subdivision_of
+from .control import Control, Floats, Integers, control_of, is_ready, read, scale_of, subdivision_of
 from .smoothing import check, refine
 from .waiting import progress
 from .words import counted, length
@@ -28,11 +28,9 @@ class MeasureSubdivision(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        an_object = context.active_object
-        if an_object is None or an_object.type != "MESH" or an_object.mode != "OBJECT":
-            cls.poll_message_set("Needs an active mesh object in Object Mode")
+        if not is_ready(cls, context):
             return False
-        if subdivision_of(an_object) is None:
+        if subdivision_of(context.active_object) is None:
             cls.poll_message_set("Needs a Subdivision Surface modifier, switched on in the viewport")
             return False
         return True

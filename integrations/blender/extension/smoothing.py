@@ -9,7 +9,7 @@ import bpy
 import limitmesh
 import numpy as np
 
-from .control import Control, Floats, control_of, scale_of, subdivision_of
+from .control import Control, Floats, control_of, is_ready, scale_of, subdivision_of
 from .luggage import Luggage
 from .waiting import progress
 from .words import counted, length
@@ -47,11 +47,9 @@ class SmoothToTolerance(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        an_object = context.active_object
-        if an_object is None or an_object.type != "MESH" or an_object.mode != "OBJECT":
-            cls.poll_message_set("Needs an active mesh object in Object Mode")
+        if not is_ready(cls, context):
             return False
-        if not an_object.data.is_editable:
+        if not context.active_object.data.is_editable:
             cls.poll_message_set("The mesh is linked from another file")
             return False
         return True
