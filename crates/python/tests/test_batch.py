@@ -50,15 +50,22 @@ def test_a_batch_gives_the_bytes_of_the_program(tmp_path):
     for source, name in ((lines, "lines.jsonl"), (jobs, "list.jsonl")):
         for job in jobs:
             job["output"].unlink()
-        told = []
-        found = limitmesh.batch(source, tmp_path / name, progress=told.append)
+        found = limitmesh.batch(source, tmp_path / name)
         assert found == limitmesh.Batch(jobs=3, kept=0, done=3, stopped_short=0, failed=0)
         assert (tmp_path / name).read_bytes() == (tmp_path / "program.jsonl").read_bytes()
         assert [job["output"].read_bytes() for job in jobs] == meshes
-        assert told and all(at.total == 3 for at in told)
     with pytest.raises(limitmesh.ReadError, match="--resume"):
         limitmesh.batch(lines, tmp_path / "lines.jsonl")
     assert limitmesh.batch(lines, tmp_path / "lines.jsonl", resume=True).kept == 3
+
+
+def test_progress_counts_jobs(tmp_path):
+    # Work that takes so long that it must be told of.
+    jobs = [{"input": "builtin:bunny", "output": tmp_path / f"{i}.ply", "tolerance": "0.01%"} for i in range(2)]
+    told = []
+    assert limitmesh.batch(jobs, tmp_path / "results.jsonl", progress=told.append, processes=1).done == 2
+    assert told and all(at.total == 2 for at in told)
+    assert sorted(told, key=lambda at: at.done) == told
 
 
 def test_a_job_that_fails_does_not_stop_others(tmp_path):
@@ -88,6 +95,14 @@ def test_shards_are_the_whole(tmp_path):
         assert limitmesh.batch(jobs, tmp_path / f"{i}.jsonl", shard=(i, 3) if i else "0/3").jobs == (2, 2, 1)[i]
         parts += (tmp_path / f"{i}.jsonl").read_text().splitlines()
     assert sorted(parts, key=lambda line: json.loads(line)["line"]) == (tmp_path / "whole.jsonl").read_text().splitlines()
+
+
+def test_files_that_only_one_thread_may_read_are_read_whole(tmp_path, memory):
+    # Of a file in memory there is one cursor, which all that read it share.
+    mesh = TETRAHEDRON + "# a long file\n" * 100_000
+    memory.pipe("/in/a.obj", mesh.encode())
+    jobs = [{"input": "memory://in/a.obj", "output": f"memory://out/{i}.ply", "tolerance": "10%"} for i in range(24)]
+    assert limitmesh.batch(jobs, tmp_path / "results.jsonl", processes=8).done == 24
 
 
 def test_files_at_addresses(tmp_path, memory):

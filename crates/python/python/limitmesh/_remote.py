@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import re
+import threading
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -21,18 +23,26 @@ def is_address(name: str) -> bool:
 class RemoteFiles:
     """Copies files there and back; the native half calls it from several threads."""
 
+    def __init__(self) -> None:
+        self._one_at_a_time = threading.Lock()
+
+    def _turn(self, files: Any) -> AbstractContextManager[Any]:
+        """To be held while files are read or written: fsspec promises only of its asynchronous file systems that threads may share them."""
+        return nullcontext() if getattr(files, "async_impl", False) else self._one_at_a_time
+
     def fetch(self, address: str, to: str | os.PathLike[str]) -> None:
         """Copies a file, and for ``.gltf`` those that it names, into the folder of ``to``."""
         files, path = _reached(address)
-        files.get_file(path, os.fspath(to))
-        if Path(to).suffix.lower() != ".gltf":
-            return
-        for name in _named_by(Path(to)):
-            beside = Path(to).parent / name
-            beside.parent.mkdir(parents=True, exist_ok=True)
-            # What is missing is an error of the mesh, or of none that matters.
-            if files.exists(own := f"{files._parent(path)}/{name}"):
-                files.get_file(own, str(beside))
+        with self._turn(files):
+            files.get_file(path, os.fspath(to))
+            if Path(to).suffix.lower() != ".gltf":
+                return
+            for name in _named_by(Path(to)):
+                beside = Path(to).parent / name
+                beside.parent.mkdir(parents=True, exist_ok=True)
+                # What is missing is an error of the mesh, or of none that matters.
+                if files.exists(own := f"{files._parent(path)}/{name}"):
+                    files.get_file(own, str(beside))
 
     def fetch_to(self, address: str, to: Path) -> str:
         """`fetch`, which gives the copy's name and says what cannot be read."""
@@ -45,18 +55,20 @@ class RemoteFiles:
     def store(self, source: str | os.PathLike[str], address: str) -> None:
         """Copies a file of this machine to an address."""
         files, path = _reached(address)
-        try:
-            files.put_file(os.fspath(source), path)
-        except FileNotFoundError:
-            # Buckets have no folders, other places do.
-            files.makedirs(files._parent(path), exist_ok=True)
-            files.put_file(os.fspath(source), path)
+        with self._turn(files):
+            try:
+                files.put_file(os.fspath(source), path)
+            except FileNotFoundError:
+                # Buckets have no folders, other places do.
+                files.makedirs(files._parent(path), exist_ok=True)
+                files.put_file(os.fspath(source), path)
 
     def size(self, address: str) -> int | None:
         """Bytes of a file; None where there is none."""
         files, path = _reached(address)
         try:
-            return int(files.info(path)["size"])
+            with self._turn(files):
+                return int(files.info(path)["size"])
         except (OSError, TypeError):
             return None
 
