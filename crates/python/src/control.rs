@@ -125,6 +125,7 @@ impl Recipe {
             channels,
         } = self.built(&soup)?;
         let corners = trace.vertices(&soup);
+        let is_stepped = !trace.between.is_empty();
         let vertices = trace.of_soup(&soup, &mesh);
         drop(soup);
         let mesh = mesh.with_boundary(self.boundary);
@@ -175,6 +176,7 @@ impl Recipe {
             diagnosis,
             faces: trace.faces,
             corners,
+            is_stepped,
             crease_angle,
             interpolated,
         };
@@ -212,6 +214,8 @@ pub(crate) struct Tables {
     pub(crate) faces: Vec<u32>,
     /// By corner of the same, the input's vertex.
     pub(crate) corners: Vec<u32>,
+    /// Whether a step of the scheme divided the input's polygons: a corner between several vertices has the first of them.
+    pub(crate) is_stepped: bool,
     /// In degrees, as asked for or found.
     pub(crate) crease_angle: Option<f64>,
     pub(crate) interpolated: Option<InterpolatedTold>,

@@ -69,13 +69,16 @@ pub(crate) struct Origins {
     parts: FaceParts,
     faces: Vec<u32>,
     corners: Vec<u32>,
+    is_stepped: bool,
 }
 
-/// By vertex the input's face, the input's vertices at a triangle of it, and the weights of these.
+/// By vertex the input's face, the input's vertices at a triangle of it, and the weights of these; and whether the place is theirs exactly:
+/// where a step divided polygons, it is that of vertices near them.
 type Rows<'py> = (
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray2<i64>>,
     Bound<'py, PyArray2<f64>>,
+    bool,
 );
 
 impl Origins {
@@ -85,6 +88,7 @@ impl Origins {
             parts,
             faces,
             corners,
+            is_stepped,
             ..
         } = tables;
         (!trail.is_unknown()).then_some(Self {
@@ -92,6 +96,7 @@ impl Origins {
             parts,
             faces,
             corners,
+            is_stepped,
         })
     }
 }
@@ -118,6 +123,7 @@ impl Origins {
             PyArray1::from_vec(py, faces),
             tell::rows(py, vertices)?,
             tell::rows(py, barycentric)?,
+            !self.is_stepped,
         ))
     }
 }

@@ -199,6 +199,23 @@ def test_origins_are_places_of_the_input(grid):
     assert (middles >= corners.min(axis=1) - 1e-9).all() and (middles <= corners.max(axis=1) + 1e-9).all()
 
 
+@pytest.mark.parametrize("options", [{"tolerance": 0.01}, {"method": "uniform", "levels": 2}])
+def test_places_on_polygons_that_were_divided_are_not_of_three_vertices(options):
+    ring = np.exp(2j * np.pi * np.arange(5) / 5)
+    vertices = np.concatenate([np.column_stack([ring.real, ring.imag, np.full(5, z)]) for z in (0.0, 1.0)])
+    sides = [[i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i] for i in range(5)]
+    found = limitmesh.refine((vertices, [[4, 3, 2, 1, 0], [5, 6, 7, 8, 9], *sides]), **options)
+    assert found.barycentric is None and found.barycentric_vertices is None
+    # The polygons are known: what is in the middle of one is of that one.
+    assert set(found.vertex_face) == set(range(7))
+    for face, z in ((0, found.vertices[:, 2].min()), (1, found.vertices[:, 2].max())):
+        middle = np.linalg.norm(found.vertices - [0, 0, z], axis=1).argmin()
+        assert found.vertex_face[middle] == face
+    # Quads are not divided.
+    cube = limitmesh.refine((vertices[[0, 1, 3, 4, 5, 6, 8, 9]], np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])), **options)
+    assert cube.barycentric.shape == (len(cube.vertices), 3)
+
+
 @pytest.mark.parametrize("method", ["uniform", "limit-normal", "amresh"])
 def test_origins_of_steps_are_places_of_the_input(grid, method):
     vertices, faces = grid

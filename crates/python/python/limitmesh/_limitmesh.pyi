@@ -63,7 +63,7 @@ class Front:
 
 @final
 class Origins:
-    def rows(self) -> tuple[_Integers, _Integers, _Floats]: ...
+    def rows(self) -> tuple[_Integers, _Integers, _Floats, bool]: ...
 
 @final
 class Replay:

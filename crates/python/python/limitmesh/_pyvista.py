@@ -121,9 +121,8 @@ def _data_of_points(surface: Any, blended: Any, fine: Refined, outgoing: Outgoin
         values, dtype = outgoing.by_vertex[name], surface.point_data[name].dtype
         values = values.reshape(len(values), *surface.point_data[name].shape[1:])
         found[name] = (np.rint(values) if dtype.kind in "iu" else values).astype(dtype)
-    if fine.barycentric is not None and fine.barycentric_vertices is not None:
-        corner = fine.barycentric.argmax(axis=1)[:, None]
-        nearest = np.take_along_axis(fine.barycentric_vertices, corner, axis=1)[outgoing.sources, 0]
+    if fine._nearest is not None:
+        nearest = fine._nearest[outgoing.sources]
         for name in set(surface.point_data) - set(blended.point_data) - {"Normals"}:
             found[name] = np.asarray(surface.point_data[name])[nearest]
     return {name: found[name] for name in surface.point_data if name in found}

@@ -126,7 +126,8 @@ class Refined:
     vertex_face
         (n,) a row of ``faces`` of the input on which each vertex was; None with ``origins=False``, as the next two are.
     barycentric
-        (n, 3) where on it: weights of the vertices ``barycentric_vertices``.
+        (n, 3) where on it: weights of the vertices ``barycentric_vertices``. None also where a step of Catmull–Clark first divided polygons
+        into quads: three vertices do not span the places on a pentagon.
     barycentric_vertices
         (n, 3) rows of ``vertices`` of the input: those of the triangle that ``barycentric`` is about.
     channels
@@ -230,19 +231,27 @@ class Refined:
 
     @property
     def barycentric(self) -> Floats | None:
-        return self._places[2]
+        return self._places[2] if self._places[3] else None
 
     @property
     def barycentric_vertices(self) -> AnyIntegers | None:
-        return self._places[1]
+        return self._places[1] if self._places[3] else None
 
     @functools.cached_property
-    def _places(self) -> tuple[AnyIntegers | None, AnyIntegers | None, Floats | None]:
+    def _places(self) -> tuple[AnyIntegers | None, AnyIntegers | None, Floats | None, bool]:
         if self._origins is None:
-            return None, None, None
-        faces, vertices, weights = self._origins.rows()
+            return None, None, None, False
+        faces, vertices, weights, is_exact = self._origins.rows()
         dtype = self.faces.dtype
-        return faces.astype(dtype, copy=False), vertices.astype(dtype, copy=False), weights
+        return faces.astype(dtype, copy=False), vertices.astype(dtype, copy=False), weights, is_exact
+
+    @property
+    def _nearest(self) -> AnyIntegers | None:
+        """By vertex, the row of ``vertices`` of the input with most weight."""
+        _, vertices, weights, _ = self._places
+        if vertices is None or weights is None:
+            return None
+        return np.take_along_axis(vertices, weights.argmax(axis=1)[:, None], axis=1)[:, 0]
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_places": self._places, "_origins": None}
