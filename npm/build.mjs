@@ -1,9 +1,9 @@
 /**
- * Builds the package: cargo, the JavaScript beside the modules, modules as texts, types, and with --pack the tarball.
+ * Builds the package: cargo, the JavaScript beside the modules, modules as texts, types, and with --pack the tarball, which needs python3.
  *
- *   node build.mjs [--profile wasm|wasm-quick] [--pack]
+ *   node build.mjs [--profile wasm|quick] [--pack]
  *
- * The profile `wasm-quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
+ * The profile `quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
  */
 
 import { execFileSync } from 'node:child_process';
@@ -94,4 +94,8 @@ buildTypes();
 for (const licence of ['LICENSE-MIT', 'LICENSE-APACHE']) {
   if (!existsSync(join(here, licence))) copyFileSync(join(root, licence), join(here, licence));
 }
-if (options.pack) run('npm', ['pack', '--silent'], here);
+if (options.pack) {
+  const words = [join(root, 'packaging', 'third_parties.py'), 'limitmesh-wasm', 'io'];
+  writeFileSync(join(here, 'LICENSE-THIRD-PARTY'), execFileSync('python3', words, { cwd: root, maxBuffer: 1 << 26 }));
+  run('npm', ['pack', '--silent'], here);
+}

@@ -1,6 +1,6 @@
 """Writes the licences of the crates that a package of this workspace is made of: each text once, after the crates that have it.
 
-    packaging/third_parties.py PACKAGE > LICENSE-THIRD-PARTY
+    packaging/third_parties.py PACKAGE [FEATURES] > LICENSE-THIRD-PARTY
 """
 
 import json
@@ -14,7 +14,8 @@ def cargo(*words: str) -> str:
     return subprocess.run(["cargo", *words, "--locked"], check=True, capture_output=True, text=True, encoding="utf-8").stdout
 
 
-tree = cargo("tree", "--package", sys.argv[1], "--edges", "normal", "--target", "all", "--prefix", "none", "--format", "{p}")
+package, features = sys.argv[1], sys.argv[2:]
+tree = cargo("tree", "--package", package, "--features", ",".join(features), "--edges", "normal", "--target", "all", "--prefix", "none", "--format", "{p}")
 built = {tuple(line.split()[:2]) for line in tree.splitlines() if line}
 owners = defaultdict[str, list[str]](list)
 for crate in json.loads(cargo("metadata", "--format-version", "1"))["packages"]:

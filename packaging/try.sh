@@ -10,9 +10,10 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 python3 -c 'import shutil, sys; shutil.unpack_archive(sys.argv[1])' "$packages"/limitmesh-*-"$1".[tz]*
-program="$(echo limitmesh-*/limitmesh*)"
-env -i "$program" refine builtin:cup -o cup.ply --picture cup.png
-env -i "$program" info cup.ply
+unpacked="$(echo limitmesh-*)"
+env -i "$unpacked/limitmesh" refine builtin:cup -o cup.ply --picture cup.png --proof cup.proof
+env -i "$unpacked/limitmesh" info cup.ply
+env -i "$unpacked/limitmesh-check" cup.ply cup.proof
 
 python3 -m venv environment
 python="$(echo environment/[bS]*/python*)"

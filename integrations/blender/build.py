@@ -42,7 +42,7 @@ def build(wheels: list[pathlib.Path], folder: pathlib.Path) -> pathlib.Path:
     # What lists and texts are in Python, they are in TOML, too.
     manifest += "".join(f"{name} = {value!r}\n" for name, value in fields.items())
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"limitmesh-{version}-{'-'.join(platforms)}.zip"
+    path = folder / f"limitmesh-blender-{version}.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("blender_manifest.toml", manifest)
         for source in sorted((HERE / "extension").glob("*.py")):

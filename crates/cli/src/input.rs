@@ -327,7 +327,7 @@ pub(crate) fn format_of(path: &Path, given: Option<Format>) -> anyhow::Result<Fo
             usage("standard input has no name that says its format; --from FORMAT does")
         }
         (Err(_), None) if path.is_dir() => usage(format!(
-            "{} is a folder; `limitmesh batch` smooths all its files",
+            "{0} is a folder; give its files, such as {0}/*.stl",
             path.display()
         )),
         (Err(unknown), None) => Err(unknown.into()),

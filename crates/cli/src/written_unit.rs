@@ -41,8 +41,16 @@ impl<'a> WrittenUnit<'a> {
 
     /// Says on standard error what becomes of the unit in a file called `output`, where people may expect another.
     pub(crate) fn note(&self, output: &str, progress: &Progress) {
-        let Some(own) = self.own else { return };
-        let (name, input) = (own.name(), input::display_name(self.input));
+        let input = input::display_name(self.input);
+        let Some(own) = self.own else {
+            if self.to == Format::ThreeMf && self.from.is_some() {
+                progress.note(format!(
+                    "{output}: in mm, as its format has a unit and {input} says none; --unit does"
+                ));
+            }
+            return;
+        };
+        let name = own.name();
         if self.becomes_millimetres() {
             progress.note(format!("{output}: in mm, 1000 times the m of {input}"));
         } else if self.to.is_gltf() && own != Unit::M {

@@ -102,7 +102,7 @@ impl FromStr for Place {
             .collect::<Result<Vec<_>, _>>()?;
         let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
             format!(
-                "'{text}' has {} weights; give three: FACE,W0,W1,W2",
+                "'{text}' has {} of three weights; give FACE,W0,W1,W2",
                 weights.len()
             )
         })?;

@@ -107,7 +107,7 @@ pub(crate) struct GlobalArguments {
     pub(crate) quiet: bool,
 
     /// Number of threads; 0 takes all processors. Results are the same bytes for any number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads, allow_negative_numbers = true)]
     #[arg(global = true, help_heading = GENERAL)]
     pub(crate) threads: usize,
 }

@@ -106,7 +106,9 @@ fn signed_extent(text: &str) -> Result<Extent, String> {
         Some(number) => finite(number).map(Extent::Percent),
         None => quantity::length(text).map(Extent::Length),
     };
-    parsed.map_err(|what| format!("{what}; give a length or per cent such as 0.01%"))
+    parsed.map_err(|what| {
+        format!("{what}; give a length such as 0.05 or 0.05mm, or per cent such as 0.01%")
+    })
 }
 
 fn is_below_zero(extent: Extent) -> bool {

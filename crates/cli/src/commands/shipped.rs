@@ -26,8 +26,9 @@ pub(crate) fn man(arguments: &ManArguments) -> anyhow::Result<Outcome> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
     for command in std::iter::once(&program).chain(commands(&program)) {
-        let man =
-            Man::new(command.clone()).source(concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
+        // A page has no short form, and would leave out what only the short help hides.
+        let command = command.clone().mut_args(|own| own.hide_short_help(false));
+        let man = Man::new(command).source(concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
         let mut page = Vec::new();
         man.render(&mut page)?;
         output::write_file(&arguments.folder.join(man.get_filename()), &page)?;

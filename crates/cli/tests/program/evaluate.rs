@@ -97,8 +97,8 @@ fn places_that_are_none_are_errors() {
         2 | evaluate {control} --at 0,0.5,0.5,0.5 | '0,0.5,0.5,0.5': the weights add up to 1.5 rather than 1
         2 | evaluate {control} --at 0,0.333,0.333,0.333 | add up to 0.999
         2 | evaluate {control} --at 0,1.5,-0.5,0 | the weight -0.5 is below 0
-        2 | evaluate {control} --at 0,1,0 | 2 weights
-        1 | evaluate {control} --at {bad} | line 2: '1 0.5 0.5' has 2 weights
+        2 | evaluate {control} --at 0,1,0 | 2 of three weights
+        1 | evaluate {control} --at {bad} | line 2: '1 0.5 0.5' has 2 of three weights
         1 | evaluate {control} --at {empty} | no places
         1 | evaluate {control} --at 0,1,0,x | '0,1,0,x' is no place
         1 | evaluate {control} --at nowhere.txt | nowhere.txt

@@ -35,6 +35,7 @@ fn each_command_has_a_page_of_the_manual() {
     let page = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
     says!(page("limitmesh.1"), "Exit codes");
     says!(page("limitmesh-refine.1"), "tolerance");
+    says!(page("limitmesh-refine.1"), "text rather than binary");
     assert!(!pages.contains(&"limitmesh-man.1".to_owned()), "{pages:?}");
     let help = command("--help", &[]).output().expect("the program runs");
     let help = String::from_utf8(help.stdout).expect("UTF-8");

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
-use crate::common::{bytes, data, done, folder, number, soup, usage_error};
+use crate::common::{OCTAHEDRON, bytes, data, done, file, folder, number, soup, usage_error};
 use crate::glb::Glb;
 use crate::package;
 
@@ -34,6 +34,10 @@ fn lengths_are_in_the_unit_of_the_package_for_all_formats() {
         &[&input, &folder.path().join("out.stl")],
     )
     .saying("its numbers are in");
+    // A package says a unit, though the file says none.
+    let output = folder.path().join("out.3mf");
+    let input = file(&folder, "octahedron.obj", OCTAHEDRON);
+    done("refine {} -o {}", &[&input, &output]).saying("in mm, as its format has a unit");
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn slips_are_answered_with_what_was_meant() {
     usage_error(
         "refine {} -o {}",
         &[folder.path(), &output],
-        "is a folder; `limitmesh batch`",
+        "is a folder; give its files, such as",
     );
     usage_error("peg.stl", &[], "`limitmesh refine peg.stl` smooths a file");
 }
@@ -151,6 +151,11 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--max-triangles 0", "at least 1"),
         ("--tolerance 0", "above 0"),
         ("--triangles 0", "at least 1"),
+        ("--triangles -5", "'-5' is not a whole number"),
+        ("--levels -3", "'-3' is not a whole number"),
+        ("--threads -1", "'-1' is not a whole number"),
+        ("--tolerance 0,02", "a length such as 0.05 or 0.05mm"),
+        ("--tolerance 1furlong", "a length such as 0.05 or 0.05mm"),
         ("--levels 0", "goals need 1"),
         ("--levels 25", "at most 24"),
         ("--limit", "lie on the limit surface"),

@@ -102,7 +102,7 @@ def batch(
         arguments = [lines, f"--output={here}", f"--threads={_options.threads_of(threads)}", *(["--resume"] if resume else [])]
         for name, value in (
             ("shard", shard if shard is None or isinstance(shard, str) else "/".join(map(str, shard))),
-            ("jobs", processes),
+            ("jobs", None if processes is None else _options.whole(processes, "processes", 1)),
             ("time-limit", time_limit),
             ("memory-limit", memory_limit),
         ):

@@ -58,18 +58,17 @@ def from_trimesh(mesh: Any) -> Mesh:
     """A ``trimesh.Trimesh``, with texture coordinates ("uv"), colours and its attributes of vertices and faces.
 
     >>> import limitmesh
-    >>> trimesh = __import__("pytest").importorskip("trimesh")
+    >>> import trimesh
     >>> smooth = limitmesh.refine(limitmesh.from_trimesh(trimesh.creation.box()), crease_angle=30)
     >>> smooth.diagnosis.clean
     True
     """
     if hasattr(mesh, "geometry"):
         raise MeshError(
-            f"a trimesh scene of {len(mesh.geometry)} meshes, expected one mesh: its to_mesh() makes one of them, and refine_file() "
-            "keeps a file as it is"
+            "a trimesh scene, expected one mesh: its to_mesh() makes one of all that it has, and refine_file() keeps a file as it is"
         )
     if not hasattr(mesh, "faces"):
-        raise MeshError(f"a trimesh {type(mesh).__name__} has no faces, expected a trimesh.Trimesh")
+        raise MeshError(f"{type(mesh).__module__}.{type(mesh).__name__} has no faces, expected a trimesh.Trimesh")
     channels = _carried(mesh.vertex_attributes, "vertex") | _carried(mesh.face_attributes, "face")
     visual = getattr(mesh, "visual", None)
     kind = getattr(visual, "kind", None)
@@ -87,7 +86,7 @@ def from_pyvista(mesh: Any) -> Mesh:
     """A ``pyvista.PolyData`` (or any dataset, by its surface), with its data of points and cells.
 
     >>> import limitmesh
-    >>> pyvista = __import__("pytest").importorskip("pyvista")
+    >>> import pyvista
     >>> sphere = limitmesh.from_pyvista(pyvista.Sphere())
     >>> limitmesh.info(sphere)["watertight"]
     True
@@ -137,7 +136,7 @@ def from_meshio(mesh: Any) -> Mesh:
     Examples
     --------
     >>> import limitmesh
-    >>> meshio = __import__("pytest").importorskip("meshio")
+    >>> import meshio
     >>> square = meshio.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [("quad", [[0, 1, 2, 3]])])
     >>> len(limitmesh.refine(limitmesh.from_meshio(square), boundary="fixed").faces) >= 2
     True
@@ -167,7 +166,7 @@ def from_open3d(mesh: Any) -> Mesh:
     """An ``open3d.geometry.TriangleMesh``, with texture coordinates ("uv", by corner), colours and materials.
 
     >>> import limitmesh
-    >>> open3d = __import__("pytest").importorskip("open3d")
+    >>> import open3d
     >>> torus = limitmesh.from_open3d(open3d.geometry.TriangleMesh.create_torus())
     >>> limitmesh.info(torus)["genus"]
     1

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _arrays, _incoming, _options
 from ._arrays import MeshIn
-from ._limitmesh import MeshError
+from ._limitmesh import MeshError, OptionError
 from ._mesh import Channel, Mesh
 from ._read import load
 from ._refined import Refined
@@ -51,7 +51,8 @@ def mesh_of(
     """A mesh with the tags and channels that are given beside it, which replace its own."""
     mesh = as_mesh(vertices, faces).with_channels(channels)
     if isinstance(creases, str):
-        _options.one_of(creases, "creases", ("auto",))
+        if creases != "auto":
+            raise OptionError(f"creases is {creases!r}, expected pairs of vertices, or 'auto'")
     elif creases is not None:
         mesh = replace(mesh, creases=creases)
     if corners is not None:

@@ -45,7 +45,7 @@ def refine_trimesh(mesh: Any, tolerance: Length | None = None, **options: Any) -
     Examples
     --------
     >>> import limitmesh
-    >>> trimesh = __import__("pytest").importorskip("trimesh")
+    >>> import trimesh
     >>> smooth = limitmesh.refine_trimesh(trimesh.creation.icosphere(subdivisions=1), "0.1%")
     >>> smooth.is_watertight, len(smooth.faces) > 80
     (True, True)
@@ -76,7 +76,7 @@ def to_trimesh(mesh: Refined | Any, *, visual: Any = None) -> Any:
     Examples
     --------
     >>> import limitmesh
-    >>> trimesh = __import__("pytest").importorskip("trimesh")
+    >>> import trimesh
     >>> limitmesh.to_trimesh(limitmesh.refine("builtin:cube", crease_angle=30)).is_watertight
     True
     """
@@ -89,7 +89,7 @@ def to_pyvista(mesh: Refined | Any) -> Any:
     Where channels have seams, or edges are sharp, points stand once for each side.
 
     >>> import limitmesh
-    >>> pyvista = __import__("pytest").importorskip("pyvista")
+    >>> import pyvista
     >>> limitmesh.to_pyvista(limitmesh.refine("builtin:cup")).n_open_edges
     0
     """
@@ -100,7 +100,7 @@ def to_meshio(mesh: Refined | Any) -> Any:
     """A ``meshio.Mesh`` of a result, with its channels as data of points and cells; points stand once for each side of seams.
 
     >>> import limitmesh
-    >>> meshio = __import__("pytest").importorskip("meshio")
+    >>> import meshio
     >>> fine = limitmesh.refine("builtin:cup")
     >>> len(limitmesh.to_meshio(fine).cells[0].data) == len(fine.faces)
     True

@@ -152,7 +152,7 @@ def channel_of(name: str, value: Any, counts: Mapping[str, int]) -> Channel:
     if array.ndim == 3 and array.shape[0] == counts["face"] and array.shape[0] * array.shape[1] == counts["corner"]:
         fits, array = ["corner"], array.reshape(-1, array.shape[2])
     if len(fits) != 1:
-        several = ", ".join(f"{count} {domain}s" for domain, count in counts.items())
+        several = ", ".join(f"{count} by {domain}" for domain, count in counts.items())
         problem = "fits several" if fits else "fits none"
         raise OptionError(f"channels[{name!r}] has {len(array)} rows, which {problem} of {several}; a limitmesh.Channel says which")
     return Channel(array, domain=cast(Domain, fits[0]), semantic=_semantic(name, array))

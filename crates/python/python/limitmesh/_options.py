@@ -328,8 +328,8 @@ def _is_distance(x: float) -> bool:
 def one_of(value: Any, name: str, expected: tuple[str | None, ...]) -> None:
     """Refuses what is none of some words."""
     if not (value is None or isinstance(value, str)) or value not in expected:
-        words = ", ".join(repr(word) for word in expected)
-        raise OptionError(f"{name} is {value!r}, expected one of {words}")
+        words = " or ".join(repr(word) for word in expected)
+        raise OptionError(f"{name} is {value!r}, expected {words}")
 
 
 def angle_of(value: float, name: str) -> float:

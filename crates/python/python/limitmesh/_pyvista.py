@@ -23,7 +23,7 @@ class Accessor:
     """What limitmesh does with a surface: ``mesh.limitmesh``.
 
     >>> import limitmesh
-    >>> pyvista = __import__("pytest").importorskip("pyvista", minversion="0.48")
+    >>> import pyvista
     >>> mesh = pyvista.Icosahedron()
     >>> smooth = mesh.limitmesh.refine("0.1%")
     >>> mesh.limitmesh.measure(smooth).upper > 0

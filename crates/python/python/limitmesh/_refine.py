@@ -89,7 +89,8 @@ def refine(
         Edges that stay sharp: pairs of vertices, or triples with a sharpness in levels; vertices that stay, likewise. "auto" in place
         of edges does what the program does by default: where nothing is tagged and the mesh looks like a part, its sharp edges stay
         sharp, and the surface is led through the vertices where that does not fold it, unless ``interpolate`` says otherwise. A
-        mesh of quadrilaterals is a cage and becomes round. ``result.crease_angle`` says what was found.
+        mesh of quadrilaterals is a cage and becomes round. ``result.crease_angle`` says what was found. Default: what the mesh has
+        tagged, in files, too; ``refine_file`` has the program's default.
     boundary
         "smooth"; "corners" keeps vertices in one face only; "fixed" keeps open boundaries as they are.
     concave_corners
