@@ -23,6 +23,14 @@ declare global {
 }
 `;
 
+/** What the examples need of Node. */
+const NODE = `
+declare module 'node:fs/promises' {
+  export function readFile(name: string): Promise<Uint8Array>;
+  export function writeFile(name: string, bytes: Uint8Array): Promise<void>;
+}
+`;
+
 const RESULTS = `
 import { refine, refineFile, type Refined } from 'limitmesh';
 export async function blobOf(bytes: Uint8Array): Promise<Blob> {
@@ -84,7 +92,7 @@ test('examples compile strictly', () => {
   const readme = readFileSync(join(npm, 'README.md'), 'utf8');
   const blocks = [...readme.matchAll(/^```js\n(.*?)^```$/gms)].map(([, block]) => block);
   assert.ok(blocks.length >= 5);
-  const texts = { 'globals.d.ts': GLOBALS, 'results.ts': RESULTS };
+  const texts = { 'globals.d.ts': GLOBALS, 'node.d.ts': NODE, 'results.ts': RESULTS };
   blocks.forEach((block, i) => (texts[`example${i}.ts`] = `${block}\nexport {};\n`));
   for (const [name, text] of Object.entries(texts)) writeFileSync(join(folder, name), text);
   const words = ['--ignoreConfig', '--noEmit', '--strict', '--skipLibCheck', '--module', 'nodenext', '--target', 'es2022', '--types', '', ...Object.keys(texts)];
