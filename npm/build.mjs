@@ -1,9 +1,9 @@
 /**
  * Builds the package: cargo, the JavaScript beside the modules, modules as texts, types, and with --pack the tarball, which needs python3.
  *
- *   node build.mjs [--profile wasm|quick] [--pack]
+ *   node build.mjs [--profile wasm|wasm-quick] [--pack]
  *
- * The profile `quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
+ * The profile `wasm-quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
  */
 
 import { execFileSync } from 'node:child_process';
