@@ -6,13 +6,12 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from _pytest.doctest import DoctestItem
 
 
 def pytest_collection_modifyitems(items):
     """Passes over examples with libraries that are not installed."""
     for item in items:
-        lines = [one.source.split() for one in item.dtest.examples] if isinstance(item, DoctestItem) else []
+        lines = [one.source.split() for one in item.dtest.examples] if isinstance(item, pytest.DoctestItem) else []
         for library in (line[1] for line in lines if line[:1] == ["import"]):
             if find_spec(library.rstrip(",")) is None:
                 item.add_marker(pytest.mark.skip(reason=f"{library} is not installed"))

@@ -58,7 +58,7 @@ pub(crate) struct BatchArguments {
     /// Number of processes at once [default: as many as there are processors for --threads of each]
     ///
     /// Each has one thread unless --threads says otherwise.
-    #[arg(long = "jobs", value_name = "N", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long = "jobs", value_name = "N", value_parser = values::positive)]
     pub(crate) processes: Option<usize>,
 
     /// Keep the results that there are, and do what is missing
@@ -77,7 +77,7 @@ pub(crate) struct BatchArguments {
     pub(crate) shard: Option<Shard>,
 
     /// Seconds that a job may take; then it is ended
-    #[arg(long, value_name = "SECONDS", value_parser = values::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]
     pub(crate) time_limit: Option<Duration>,
 
     /// Memory that a job may take [such as 500MB; K, M, G and T are powers of 1024]; then it is ended

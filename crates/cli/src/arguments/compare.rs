@@ -34,11 +34,11 @@ pub(crate) struct CompareArguments {
     pub(crate) angle: f64,
 
     /// Steps of the adaptive methods
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::steps, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::steps)]
     pub(crate) levels: usize,
 
     /// Samples on each surface; all its vertices are among them, however many they are
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
 
     #[command(flatten)]

@@ -35,7 +35,7 @@ pub(crate) struct ExactArguments {
     /// With other goals, whichever is reached first ends the refinement. Each mesh of a glTF file and each object of a 3MF file may have so many.
     /// From 20,000 on a 32nd of them may be left over, and more where many faces are alike, as on a regular sphere: dividing some of those
     /// would bring the mesh no nearer. Also with --method planarity and vertex-error and with --scheme sqrt3.
-    #[arg(long, value_name = "N", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) triangles: Option<usize>,
 
     /// Greatest distance between the mesh and the limit surface as the cameras see it, in pixels [default with a camera in --view: 1]

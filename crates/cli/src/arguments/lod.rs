@@ -43,12 +43,12 @@ pub(crate) struct LodArguments {
     /// Greatest distances between a level and the limit surface, coarse to fine, with commas between them
     ///
     /// Lengths in the mesh's unit, or with % in per cent of the diagonal of its bounding box. With --morph they hold place by place.
-    #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = values::tolerance, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = values::tolerance)]
     #[arg(conflicts_with_all = ["levels", "tolerance", "ratio"])]
     pub(crate) tolerances: Vec<Extent>,
 
     /// Number of levels, whose tolerances are --tolerance and its multiples [1 to 12; default: 4]
-    #[arg(long, value_name = "N", value_parser = values::detail_levels, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::detail_levels)]
     pub(crate) levels: Option<usize>,
 
     /// Tolerance of the finest level [default: 0.1%]
@@ -64,19 +64,19 @@ pub(crate) struct LodArguments {
     pub(crate) morph: bool,
 
     /// How far a level may be off in the picture, for the distances to switch at [pixels]
-    #[arg(long, value_name = "P", default_value_t = 1.0, value_parser = values::above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "P", default_value_t = 1.0, value_parser = values::above_zero)]
     pub(crate) pixels: f64,
 
     /// Height of that picture [pixels]
-    #[arg(long, value_name = "H", default_value_t = 1080.0, value_parser = values::above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "H", default_value_t = 1080.0, value_parser = values::above_zero)]
     pub(crate) height: f64,
 
     /// Its vertical angle of view [degrees, below 180]
-    #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = values::field_of_view, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = values::field_of_view)]
     pub(crate) fov: f64,
 
     /// Give no more triangles a level [default: 30000000]
-    #[arg(long, value_name = "N", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) max_triangles: Option<usize>,
 
     #[command(flatten)]

@@ -51,11 +51,11 @@ pub(crate) struct MeasureArguments {
     ///
     /// Default: 5, or fewer where they would give more than 4 million triangles, but two more than the first mesh has. With
     /// --limit-of only.
-    #[arg(long, value_name = "N", value_parser = values::steps, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::steps)]
     pub(crate) reference_levels: Option<usize>,
 
     /// Samples on each surface; all its vertices are among them, however many they are
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
 
     /// Bound the distance from both sides instead of sampling it: no point is farther away than the upper bound
@@ -77,7 +77,7 @@ pub(crate) struct MeasureArguments {
     ///
     /// A unit is a piece of a triangle bounded, or a triangle or box looked at for that: how long one takes depends on how
     /// much of the other mesh is near. With --certified only.
-    #[arg(long, value_name = "N", value_parser = values::work, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::work)]
     pub(crate) max_work: Option<u64>,
 
     // But for what is said of files, with --limit-of only.

@@ -54,7 +54,7 @@ pub(crate) use values::{Extent, MAX_STEPS, Shard, Size};
 pub(crate) use view::ViewArguments;
 pub(crate) use viewer::Viewer;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Arg, Args, Parser, Subcommand};
 
 use shared::GENERAL;
 
@@ -92,11 +92,20 @@ Ctrl-C, SIGTERM or SIGHUP cancelled it: no file is left half written.";
 /// numbers of the mesh are.
 #[derive(Parser, Debug)]
 #[command(name = "limitmesh", bin_name = "limitmesh", version, propagate_version = true, after_help = EXAMPLES)]
+#[command(mut_args(with_negative_numbers), mut_subcommands(|own| own.mut_args(with_negative_numbers)))]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) global: GlobalArguments,
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// Takes -5 after an option for its value, so that the error says what is wrong with it.
+fn with_negative_numbers(argument: Arg) -> Arg {
+    match !argument.is_positional() && argument.get_action().takes_values() {
+        true => argument.allow_negative_numbers(true),
+        false => argument,
+    }
 }
 
 /// Options of every command.
@@ -107,7 +116,7 @@ pub(crate) struct GlobalArguments {
     pub(crate) quiet: bool,
 
     /// Number of threads; 0 takes all processors. Results are the same bytes for any number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
     #[arg(global = true, help_heading = GENERAL)]
     pub(crate) threads: usize,
 }

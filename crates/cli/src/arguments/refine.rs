@@ -266,7 +266,7 @@ pub(crate) struct RefineArguments {
     /// The mesh that was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
     /// would give more. Default: 30000000 for exact, 5000000 for planarity and vertex-error, 50000000 for the others, which keep
     /// memory below about 10 gigabytes.
-    #[arg(long, value_name = "N", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) max_triangles: Option<usize>,
 
     #[command(flatten)]
@@ -280,7 +280,7 @@ pub(crate) struct RefineArguments {
     /// The mesh that was reached by then is written. Of the stepwise methods it is the number of steps [0 to 12; default: 3]; for goals it is a
     /// cap [1 to 24; default: 24, for planarity and vertex-error 30, for --scheme sqrt3, where two levels divide an edge in three, 20], and
     /// the exit code is 3 where it is reached.
-    #[arg(long, value_name = "N", value_parser = values::levels, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::levels)]
     pub(crate) levels: Option<usize>,
 
     /// Write PLY and STL as text rather than binary

@@ -278,6 +278,7 @@ impl Batch<'_> {
         };
         let mut observer = |at: &limitmesh::progress::Progress| progress.answer(at);
         let mut watch = Watch::new(&mut observer, Stage::Refining);
+        watch.stage(Stage::Refining, Some(jobs))?;
         let (sender, receiver) = channel();
         thread::scope(|scope| -> anyhow::Result<()> {
             for _ in 0..processes.min(jobs) {
@@ -288,8 +289,7 @@ impl Batch<'_> {
             let mut noted = Instant::now();
             let outcome = loop {
                 progress.stage(format!("refining: {}", counts.in_words()));
-                let reported = watch.stage(Stage::Refining, Some(jobs));
-                if let Err(why) = reported.and_then(|()| watch.done(counts.all())) {
+                if let Err(why) = watch.done(counts.all()) {
                     break Err(why.into());
                 }
                 if noted.elapsed() > TELL {
